@@ -45,9 +45,10 @@ void CutLoads::mount(const Cutter& cutter, int number) {
   tool.model.emplace(*wish_.material, *tool.profile, edges, tool.traits.rake_deg);
 }
 
-std::shared_ptr<const ToolLoads> CutLoads::loads_of(int number) const {
+std::shared_ptr<const ToolLoads> CutLoads::loads_of(int number, const std::string& shape) const {
   for (const Tool& tool : tools_) {
-    if (tool.number == number && tool.loads->chip_mm.seconds() > 0) return tool.loads;
+    if (tool.number == number && tool.shape == shape && tool.loads->chip_mm.seconds() > 0)
+      return tool.loads;
   }
   return nullptr;
 }

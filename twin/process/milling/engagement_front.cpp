@@ -175,7 +175,26 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
   const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0;
   if (differs && is_cut_there(point, z, i, j)) return 0;
   const auto own = static_cast<double>(heights_->height(i, j));
-  return (own > least ? own : highest) - z;
+  const double stands = own > least ? own : highest;
+  if (highest - lowest <= kThinnestFront_mm) return stands - z;
+  return std::max(least, left_at_wall(point, i, j, stands)) - z;
+}
+
+/// How high the moves that made the cells about a place beside a wall have left it. A cell that the
+/// wall goes through is as high as it is on one side of the wall; what those moves have left
+/// between their wall and the place counts where it is thicker than kThinnestFront_mm.
+double EngagementScan::left_at_wall(const Vec2& point, int i, int j, double height) const {
+  std::uint32_t asked = MeshPatch::kNotCut;
+  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
+      if (static_cast<double>(heights_->height(x, y)) >= height) continue;
+      const std::uint32_t number = owners_->present_cut_id(x, y);
+      if (number == asked || !ways_->knows(number)) continue;
+      asked = number;
+      height = std::min(height, ways_->height_mm(number, point, kThinnestFront_mm));
+    }
+  }
+  return behind_itself(point, behind_held(point, height));
 }
 
 /// How high the moves that made the four cells about a place have left it; where one of them is of

@@ -185,6 +185,7 @@ class EngagementScan {
   double over_surface(const Station& station, const Vec2& point) const;
   double behind_itself(const Vec2& point, double height) const;
   double left_by_owners(const Vec2& point, int i, int j) const;
+  double left_at_wall(const Vec2& point, int i, int j, double height) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
   Station station_at(double part) const;
   Vec2 before_rim(const Station& station, double angle) const;

@@ -103,7 +103,7 @@ void MillingStage::finish(bool whole) {
   }
   loads_.finish();
   for (ToolUse& use : uses_) {
-    use.loads = loads_.loads_of(use.number);
+    use.loads = loads_.loads_of(use.number, use.shape);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }

@@ -31,8 +31,8 @@ class PastWays {
   /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
   /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
-  /// slope that is of neither a flat tool nor a ball 200.
-  double height_mm(std::uint32_t number, const Vec2& point) const;
+  /// slope that is of neither a flat tool nor a ball 200. As if the tool were wider by `margin_mm`.
+  double height_mm(std::uint32_t number, const Vec2& point, double margin_mm = 0) const;
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -61,8 +61,8 @@ class PastWays {
   bool covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
-  double line_height(const Way& way, const Vec2& point) const;
-  double arc_height(const Way& way, const Vec2& point) const;
+  double line_height(const Way& way, const Vec2& point, double margin_mm) const;
+  double arc_height(const Way& way, const Vec2& point, double margin_mm) const;
 
   std::vector<Way> ways_;
   std::vector<Arc> arcs_;

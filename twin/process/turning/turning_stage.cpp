@@ -138,14 +138,7 @@ bool TurningStage::stands(const Motion& m) const {
 bool TurningStage::mount_for(const Motion& m) {
   if (mounted_) return mounted_->cutter.has_value();
   mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
-  const auto known = std::find_if(uses_.begin(), uses_.end(), [&](const ToolUse& use) {
-    return use.number == mounted_->number;
-  });
-  use_ = static_cast<std::size_t>(known - uses_.begin());
-  if (known == uses_.end()) {
-    uses_.push_back(use_of(*mounted_));
-    tell_tool(*mounted_, m, log_);
-  }
+  use_ = place_of_use(uses_, *mounted_, m, log_);
   mount_checks();
   return mounted_->cutter.has_value();
 }

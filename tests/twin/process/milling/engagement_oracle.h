@@ -30,6 +30,7 @@ struct PastMove {
 struct EngagementTruth {
   double arc = 0, entry = 0, exit = 0;
   double effective_mm = 0;
+  double deep_mm = 0;  ///< the highest over what the tool leaves, of all places in material
 };
 
 /// Cutters outlive it.
@@ -87,6 +88,7 @@ class EngagementOracle {
     const Vec2 ahead = glm::normalize(Vec2(next - tip)), left(-ahead.y, ahead.x);
     const double radius = cutter.radius_mm();
     const bool flat = cutter.height_mm(radius * (1 - 1e-9)) <= 0;
+    EngagementTruth truth;
     // Out to where is it in material, in each direction?
     std::vector<double> out(static_cast<std::size_t>(angles), 0.0);
     double farthest = 0;
@@ -99,12 +101,14 @@ class EngagementOracle {
         const Vec2 p = Vec2(tip) + r * way;
         const double own = std::max(tip.z, blank_.min.z) + cutter.height_mm(r);
         if (own + kOracleFilm_mm >= blank_.max.z) continue;
-        if (height(p, cutter, move, at) > own + kOracleFilm_mm && is_on_way(p, cutter, move, at))
-          out[static_cast<std::size_t>(k)] = r;
+        const double stands = height(p, cutter, move, at);
+        if (stands <= own + kOracleFilm_mm || !is_on_way(p, cutter, move, at)) continue;
+        out[static_cast<std::size_t>(k)] = r;
+        const double leaves = own + cutter.height_mm(r * std::abs(std::cos(phi))) - cutter.height_mm(r);
+        truth.deep_mm = std::max(truth.deep_mm, stands - leaves);
       }
       farthest = std::max(farthest, out[static_cast<std::size_t>(k)]);
     }
-    EngagementTruth truth;
     if (farthest <= 0) return truth;
     truth.effective_mm = 2 * farthest;
     int first = -1, last = -1, count = 0;
@@ -185,6 +189,9 @@ class EngagementOracle {
 struct EngagementErrors {
   double most = 0;
   int looks = 0, within = 0;
+  /// Of depths: those off by more than kSameDepth_mm.
+  int deeper = 0, shallower = 0;
+  static constexpr double kSameDepth_mm = 0.02;
   std::vector<double> all;
   void add(const EngagementLook& found, const EngagementTruth& truth) {
     const double off = found.is_engaged() && truth.arc > 0
@@ -193,6 +200,8 @@ struct EngagementErrors {
                                        std::abs(found.exit_rad - truth.exit)})
                            : std::max(found.angle_rad, truth.arc);
     all.push_back(off / kOracleDegree);
+    if (found.deep_mm > truth.deep_mm + kSameDepth_mm) ++deeper;
+    if (found.deep_mm < truth.deep_mm - kSameDepth_mm) ++shallower;
     ++looks;
     if (off <= 2 * kOracleDegree) ++within;
     most = std::max(most, off);
@@ -204,7 +213,8 @@ struct EngagementErrors {
           all[static_cast<std::size_t>(share * (static_cast<double>(all.size()) - 1))]);
     };
     return std::to_string(within) + " of " + std::to_string(looks) + " within 2 degrees; p50 " +
-           at(0.5) + " p90 " + at(0.9) + " p95 " + at(0.95) + " p99 " + at(0.99) + " most " + at(1);
+           at(0.5) + " p90 " + at(0.9) + " p95 " + at(0.95) + " p99 " + at(0.99) + " most " + at(1) +
+           "; too deep " + std::to_string(deeper) + ", not deep enough " + std::to_string(shallower);
   }
 };
 
