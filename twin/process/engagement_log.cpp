@@ -129,6 +129,12 @@ void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, d
   window_ = {};
 }
 
+void EngagementLog::set_scallops(int tool, const std::string& shape, const Scallops& scallops) {
+  for (EngagementOfTool& one : tools_) {
+    if (one.tool == tool && one.shape == shape) one.scallops = scallops;
+  }
+}
+
 void EngagementLog::add_turned(int tool, const Cutter& cutter, const TurnedWay& way) {
   auto found = std::find_if(turned_.begin(), turned_.end(), [&](const TurningEngagement& other) {
     return other.tool == tool && other.shape == cutter.spec();

@@ -7,6 +7,7 @@
 
 #include "stock/present_heights.h"
 #include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/scallops.h"
 #include "twin/process/milling/way_profile.h"
 
 namespace kerf {
@@ -56,7 +57,7 @@ EngagementMeter::EngagementMeter(const StockModel& stock, EngagementLog& log,
 
 void EngagementMeter::mount(int tool, const Cutter& cutter) {
   log_.mount(tool, cutter);
-  ways_.mount(cutter);
+  ways_.mount(cutter, tool);
   diameter_mm_ = 2 * cutter.radius_mm();
   lift();
   has_held_ = false;
@@ -253,6 +254,17 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   flush();
   heights_ = nullptr, points_ = nullptr;
   return taken_;
+}
+
+void EngagementMeter::finish() {
+  hand_over_();
+  const StockModel& model = stock_.bare();
+  const auto* const present = dynamic_cast<const PresentHeights*>(&model);
+  if (present == nullptr || !model.keeps_cut_ids()) return;
+  const std::optional<HeightGrid> heights = present->present_heights();
+  if (!heights) return;
+  for (const ScallopsOfTool& tool : ScallopScan(*heights, *present, ways_).run())
+    log_.set_scallops(tool.tool, tool.shape, tool.crests);
 }
 
 }  // namespace kerf

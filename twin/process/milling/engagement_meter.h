@@ -61,6 +61,10 @@ class EngagementMeter {
   /// A move that is cut, under its number, whatever it is.
   void note_cut(const CutMove& move) { ways_.add(move); }
 
+  /// All is cut: what crests are left (ScallopScan), where there are heights and it is known who
+  /// cut them.
+  void finish();
+
   static constexpr double kSameAngle_rad = 8 * kPi / 180;
 
  private:

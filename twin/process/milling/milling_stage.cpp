@@ -91,6 +91,7 @@ void MillingStage::begin_reporting() {
 }
 
 void MillingStage::finish(bool whole) {
+  if (engagement_) engagement_->finish();
   parts_.finish();
   fixtures_.finish();
   machine_.finish();

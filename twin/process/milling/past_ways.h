@@ -22,10 +22,23 @@ class PastWays {
   static constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 27;
 
   void clear();
-  /// What is added from now on is cut by this one.
-  void mount(const Cutter& cutter);
+  /// What is added from now on is cut by this one, which the program calls by this number.
+  void mount(const Cutter& cutter, int number = 0);
   /// Lines, and arcs about Z. Others are left out, and cover nothing.
   void add(const CutMove& move);
+  /// How many there are, and of each of them.
+  std::size_t tools() const { return tools_.size(); }
+  double radius_mm(int tool) const { return tools_[static_cast<std::size_t>(tool)].radius_mm; }
+  int number_of(int tool) const { return tools_[static_cast<std::size_t>(tool)].number; }
+  const std::string& shape_of(int tool) const {
+    return tools_[static_cast<std::size_t>(tool)].spec;
+  }
+  /// Of the last move of that number; -1: it is not known, or its tool is flat.
+  int round_tool_of(std::uint32_t number) const {
+    if (!knows(number)) return -1;
+    const std::uint32_t tool = ways_[last_[number]].tool;
+    return tools_[tool].is_flat ? -1 : static_cast<int>(tool);
+  }
   bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
   /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
@@ -39,12 +52,13 @@ class PastWays {
   /// A cutter's surface: how wide it is where it is so much above its tip.
   struct Tool {
     std::string spec;
+    int number = 0;
     double radius_mm = 0;
     bool is_flat = false, is_ball = false;
     double high_mm = 0;          ///< where it is as wide as it gets
     std::vector<double> radius;  ///< over the height, 0 .. high_mm
     double reach_mm(double above_tip_mm) const;
-    std::vector<double> lift;  ///< over the radius
+    std::vector<double> lift;  ///< over the root of 1 - distance / radius
     double lift_mm(double distance_mm) const;
   };
   struct Arc {
