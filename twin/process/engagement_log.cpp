@@ -64,7 +64,9 @@ void EngagementLog::mount(int tool, const Cutter& cutter) {
   });
   tool_ = static_cast<std::uint32_t>(found - tools_.begin());
   if (found != tools_.end()) return;
-  tools_.push_back({tool, cutter.spec(), 2 * cutter.radius_mm(), 0, {}});
+  EngagementOfTool fresh;
+  fresh.tool = tool, fresh.shape = cutter.spec(), fresh.diameter_mm = 2 * cutter.radius_mm();
+  tools_.push_back(std::move(fresh));
 }
 
 /// Moves that are shorter than half a cell of the map are put together: chords, which it would not

@@ -22,7 +22,7 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
-constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 12'000, kShareOfCells = 0.5;
+constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 30'000, kShareOfCells = 0.25;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
