@@ -15,7 +15,7 @@ constexpr double kThinnestFront_mm = 0.002;
 constexpr int kRays = FrontRays::kMost;
 /// Radii along a ray, of cutters that are not flat; fewer, in some directions, to learn how far out
 /// they are in material at all; and steps to where they are.
-constexpr int kRadii = 16, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
+constexpr int kRadii = 30, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
 constexpr double kLeastStep = 0.1;
 /// What is no farther above material, of the radius, may be in some between two radii.
 constexpr double kNearMaterial = 0.06;

@@ -49,7 +49,7 @@ class FrontRays {
   /// The outermost two are so near to the sides.
   static constexpr double kRim_rad = 1.0 * kPi / 180;
   /// Heights that differ by less than this part of the greatest are taken to change evenly.
-  static constexpr double kEven = 0.06;
+  static constexpr double kEven = 0.03;
 
   struct Direction {
     double angle = 0, high_mm = 0;
