@@ -102,8 +102,8 @@ Json tools_json(const Report& report) {
                             {"line", use.chip.most_at.line},
                             {"cutting_speed_m_min", rounded(use.chip.speed_m_per_min)},
                             {"rate_max_mm3_s", rounded(use.peak_mm3_per_s)}};
-      if (use.loads) add_loads(tool["engagement"], *use.loads);
     }
+    if (use.loads) add_loads(tool["engagement"], *use.loads);
     out.push_back(std::move(tool));
   }
   return out;

@@ -123,8 +123,8 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
                 "cutting speed {:.3g} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
                 use.chip.speed_m_per_min);
-        if (use.loads) out += loads_text(*use.loads);
       }
+      if (use.loads) out += loads_text(*use.loads);
     }
     out += "\n";
     head = "          ";
