@@ -106,6 +106,7 @@ std::vector<std::string> validate(const ModbusSettings& settings) {
       {"spindle", settings.spindle},
       {"tool_offset_z", settings.tool_offset_z},
       {"trigger", settings.trigger},
+      {"load", settings.load},
       {"counter", settings.counter},
       {"counter_begun", settings.counter_begun}};
   for (const auto& [key, wanted] : others) {

@@ -114,6 +114,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("spindle_max_rpm", out.spindle_max_rpm);
   machine.number("spindle_power_kw", out.spindle_power_kw);
   machine.number("spindle_torque_nm", out.spindle_torque_nm);
+  machine.number("spindle_current_a", out.spindle_current_a);
   read_kinematics(machine, out);
 }
 

@@ -14,7 +14,7 @@ namespace kerf {
 namespace {
 
 constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",      "tool_offset_z",
-                                            "trigger", "counter", "counter_begun"};
+                                            "trigger", "counter", "counter_begun", "load"};
 
 }  // namespace
 

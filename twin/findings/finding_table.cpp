@@ -310,6 +310,11 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
      tr_noop("The tool cuts while the spindle runs anticlockwise (M4): edges of right-hand tools "
              "then run backwards."),
      tr_noop("M3; or it is a left-hand tool.")},
+    {Id::kLoadDiffers, "load-differs", kWarning, Topic::kMachine,
+     tr_noop("For some seconds the spindle of a watched machine has taken more or less than its "
+             "cuts should (--material); a note where its load stands still."),
+     tr_noop("More: is the tool blunt? Less: is it broken? Else material, depth or tool are other "
+             "ones than kerf knows.")},
 }};
 
 constexpr bool in_order() {
