@@ -368,8 +368,8 @@ void HalSource::Reading::look_for_load() {
   load_is_missing = is_missing;
   status.trouble.clear();
   if (!is_missing) return;
-  status.trouble = trf("HAL has no number under the name {} (source.map.load.pin)",
-                       settings.load->pin);
+  status.trouble =
+      trf("HAL has no number under the name {} (source.map.load.pin)", settings.load->pin);
 }
 
 HalSource::HalSource(HalSettings settings)

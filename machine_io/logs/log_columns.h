@@ -29,10 +29,10 @@ enum class ColumnRole : std::uint8_t {
 /// One column, ready for reading its cells.
 struct LogColumn {
   ColumnRole role = ColumnRole::kIgnored;
-  std::uint8_t index = 0;                    ///< of a position
-  double factor = 1.0;                       ///< value in the cell times this: mm or degrees
-  double offset = 0.0;                       ///< of a load, added then
-  std::int64_t ns_per_unit = 1'000'000'000;  ///< of a time
+  std::uint8_t index = 0;                          ///< of a position
+  double factor = 1.0;                             ///< value in the cell times this: mm or degrees
+  double offset = 0.0;                             ///< of a load, added then
+  std::int64_t ns_per_unit = 1'000'000'000;        ///< of a time
   LoadUnit load_unit = LoadUnit::kPercentOfPower;  ///< of a load
 };
 

@@ -231,8 +231,8 @@ class Opening {
       has_coordinates |= line_.starts_with("# coordinates: ");
     }
     if (settings_.load) {
-      return fail(0, tr("source.map.load is for CSV and halsampler; a recording has its load itself"),
-                  "");
+      return fail(
+          0, tr("source.map.load is for CSV and halsampler; a recording has its load itself"), "");
     }
     LogColumns columns;
     if (!read_header(LogSettings{}, ',', columns)) return false;

@@ -93,8 +93,9 @@ struct LogContents {
 /// not hold line ends); `#` begins a comment; LF or CRLF. Columns, in any order and case: t (time,
 /// timestamp, t_device, t_host; one is needed), x .. w or j0 .. j8 (joint0, or LinuxCNC's HAL pins;
 /// at least one), tool, line, tool_offset_z (tloz), spindle_rpm (rpm), trigger, program,
-/// load_percent, load_percent_torque, load_kw, load_nm, load_a. A unit may be in the name: x_mm, "x [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes().
-/// Cells that are empty and '-' mean what they mean in a recording.
+/// load_percent, load_percent_torque, load_kw, load_nm, load_a. A unit may be in the name: x_mm, "x
+/// [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes(). Cells that are empty and '-'
+/// mean what they mean in a recording.
 ///
 /// Times: a recording has both its times back as recorded, to the ns (but see below). Of other logs
 /// device_ns is the log's stamp (seconds of whatever clock it has; halsampler: sample number times

@@ -155,9 +155,12 @@ ModbusSource::Poller::Poller(ModbusSettings given)
     wanted_.push_back(*settings_.axes[i]);
   }
   const std::pair<Extra, const std::optional<ModbusRegister>&> extras[] = {
-      {Extra::kTool, settings_.tool},       {Extra::kLine, settings_.line},
-      {Extra::kSpindle, settings_.spindle}, {Extra::kToolOffset, settings_.tool_offset_z},
-      {Extra::kTrigger, settings_.trigger}, {Extra::kLoad, settings_.load},
+      {Extra::kTool, settings_.tool},
+      {Extra::kLine, settings_.line},
+      {Extra::kSpindle, settings_.spindle},
+      {Extra::kToolOffset, settings_.tool_offset_z},
+      {Extra::kTrigger, settings_.trigger},
+      {Extra::kLoad, settings_.load},
       {Extra::kCounterBegun, settings_.counter_begun},
       {Extra::kCounter, settings_.counter}};
   for (const auto& [what, wanted] : extras) {

@@ -259,11 +259,13 @@ bool check_load(const LiveRequest& request, const PositionSource& source,
   if (*unit == LoadUnit::kAmperes && wish.spindle_current_a <= 0) missing = "--spindle-current";
   if (by_torque && wish.spindle_torque_nm <= 0) missing = "--spindle-torque";
   if (missing == nullptr) return true;
-  d.message = trf("the spindle's load comes in {}, and what it is rated for is not known: {} is "
-                  "needed beside --material",
-                  word_of(*unit), missing);
-  d.hint = tr("its nameplate has power and current; torque in Nm is 9549 * kW / rpm of the "
-              "nameplate");
+  d.message =
+      trf("the spindle's load comes in {}, and what it is rated for is not known: {} is "
+          "needed beside --material",
+          word_of(*unit), missing);
+  d.hint =
+      tr("its nameplate has power and current; torque in Nm is 9549 * kW / rpm of the "
+         "nameplate");
   diagnostics.push_back(std::move(d));
   return false;
 }

@@ -44,8 +44,7 @@ struct LiveRequest {
 LiveRequest understand_live(const Arguments& arguments, Diagnostics& diagnostics);
 
 /// A load that cannot be held against the material: an error, and false. None at all: a warning.
-bool check_load(const LiveRequest& request, const PositionSource& source,
-                Diagnostics& diagnostics);
+bool check_load(const LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);
 
 /// How the samples of `source` are to be read: completes request.options.cutting.
 void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);

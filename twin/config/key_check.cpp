@@ -115,8 +115,7 @@ class KeyChecker {
     return pattern.ends_with(".ITEM") && axis_of_item(item) < 0 && joint_of_item(item) < 0;
   }
 
-  void unknown(ConfigNode& node, std::string_view pattern, bool small_item,
-               std::string_view item) {
+  void unknown(ConfigNode& node, std::string_view pattern, bool small_item, std::string_view item) {
     std::vector<std::string> names;
     for (const Setting& spec : key_table()) {
       const std::string_view name = name_below(spec, pattern);

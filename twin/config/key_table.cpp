@@ -13,7 +13,7 @@
 namespace kerf {
 namespace {
 
-constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",      "tool_offset_z",
+constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",       "tool_offset_z",
                                             "trigger", "counter", "counter_begun", "load"};
 
 }  // namespace

@@ -305,7 +305,8 @@ constexpr std::array kMachineSettings{
             .least = 0,
             .most = 1000,
             .least_excluded = true,
-            .purpose = tr_noop("what it has at the tool (over-power, with --material); 100 % of a load"),
+            .purpose =
+                tr_noop("what it has at the tool (over-power, with --material); 100 % of a load"),
             .help = tr_noop("with --material: power that the spindle has at the tool"),
             .value_name = "KW"},
     Setting{.key = "machine.spindle_torque_nm",

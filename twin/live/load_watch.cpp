@@ -31,15 +31,13 @@ constexpr double kQuartiles = 1.35;
 constexpr double kLeastShare = 0.01;
 /// So many times the margin a cut should take, or one that takes nothing cannot be seen.
 constexpr double kSeen = 2;
-constexpr double kLeastStill_s = 3, kStillTimes = 3;
+constexpr double kLeastStill_s = 3, kStillTimes = 4;
 /// A number that stands still through so much cutting is told.
 constexpr double kStillCutting_s = 10;
 
 double abs_rpm(const AxisSample& sample) { return std::abs(sample.spindle_rpm); }
 
-bool is_same_speed(double a, double b) {
-  return std::abs(a - b) <= kSameSpeed * std::max(a, b);
-}
+bool is_same_speed(double a, double b) { return std::abs(a - b) <= kSameSpeed * std::max(a, b); }
 
 }  // namespace
 
@@ -286,7 +284,10 @@ void LoadWatch::judge_window(std::int64_t last, int number, const IdleNow& idle)
     usual.nominal += (expected.nominal_low + expected.nominal_high) / 2;
   }
   if (cuts > high + margin) now.side = Side::kHigher;
-  if (cuts < low - margin && low > kSeen * margin) now.side = Side::kLower;
+  const bool can_be_lower = low > kSeen * margin;
+  if (can_be_lower && cuts < low - margin) now.side = Side::kLower;
+  // Between cuts little should be taken: that ends no stretch of too little.
+  if (now.side == Side::kWithin && !can_be_lower && stretch_.side == Side::kLower) return;
   now.seconds = LoadBins::kBin_s;
   now.begin_s = LoadBins::begin_of(last);
   for (std::int64_t n = last; n > last - kWindow && now.source.line == 0; --n) {
@@ -321,8 +322,8 @@ void LoadWatch::note(Tool& tool, int number, const Stretch& now) {
 }
 
 void LoadWatch::tell(int number, const Stretch& stretch, double idle) {
-  Finding finding = finding_at(FindingId::kLoadDiffers, Severity::kWarning, stretch.source,
-                               stretch.begin_s);
+  Finding finding =
+      finding_at(FindingId::kLoadDiffers, Severity::kWarning, stretch.source, stretch.begin_s);
   finding.tool = number;
   const auto mean = [&](double sum) { return load_text(sum / stretch.seconds); };
   finding.text = trf(

@@ -49,6 +49,7 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
       rake_deg_(cutter.edge_traits().rake_deg),
       profile_(edge_points(cutter), material ? material->mc : 0),
       material_(material) {
+  is_rounded_ = !cutter.spec().starts_with("flat");
   if (!cutter.holder().empty()) stickout_mm_ = cutter.holder().front().from_z_mm;
   if (!material_ || teeth_ == 0) return;
   const double helix_deg = cutter.edge_traits().helix_deg.value_or(kUsualHelix_deg);
@@ -67,6 +68,7 @@ CutLimits::Place CutLimits::place(const EngagementLook& look, double rpm) const 
   place.at_1mm[CutLimit::kRate] = section_mm2(look) / 60;
   if (teeth_ == 0 || rpm <= 0) return place;
   place.teeth_per_min = teeth_ * rpm;
+  place.rpm = rpm;
   const double share = look.is_plunge ? std::sin(point_deg_ / 2 * kPi / 180)
                                       : chip_of(profile_, cut_of(look, rpm)).most_mm;
   place.at_1mm[CutLimit::kChip] = std::max(kLeastShare, share);
@@ -104,7 +106,11 @@ void CutLimits::add_forces(const EngagementLook& look, double rpm, Place& place)
 double CutLimits::most_feed(const FeedAims& aims, const Place& place) {
   double most = std::numeric_limits<double>::infinity();
   for (const CutLimit limit : kCutLimits) {
-    const std::optional<double>& allowed = aims.most[limit];
+    std::optional<double> allowed = aims.most[limit];
+    if (limit == CutLimit::kPower && aims.spindle_torque_nm > 0) {
+      const double most_kw = aims.spindle_torque_nm * 2 * kPi * place.rpm / 60 / 1000;
+      allowed = std::min(allowed.value_or(most_kw), most_kw);
+    }
     if (!allowed || place.at_1mm[limit] <= 0) continue;
     const double times = *allowed / place.at_1mm[limit];
     if (limit == CutLimit::kRate) {

@@ -32,7 +32,7 @@ struct LiveReport {
   std::uint64_t clock_steps = 0;  ///< this computer's clock was set meanwhile
   std::uint64_t warnings_ahead = 0;
   std::optional<LoadReport> load;  ///< of the spindle; none: the source tells none
-  std::vector<LiveRun> runs;  ///< one where the machine has run one program, or none
+  std::vector<LiveRun> runs;       ///< one where the machine has run one program, or none
 };
 
 }  // namespace kerf

@@ -211,9 +211,9 @@ void add_spindle_load(std::string& out, const LoadReport& load) {
   const std::string_view sign = sign_of(load.unit);
   out += trf("load      {} to {} {}", load_text(load.least), load_text(load.most), sign);
   for (const LoadReport::Idle& idle : load.idle) {
-    out += idle.rpm > 0 ? trf(", {} {} in the air at {:.0f} rpm", load_text(idle.load), sign,
-                              idle.rpm)
-                        : trf(", {} {} in the air", load_text(idle.load), sign);
+    out += idle.rpm > 0
+               ? trf(", {} {} in the air at {:.0f} rpm", load_text(idle.load), sign, idle.rpm)
+               : trf(", {} {} in the air", load_text(idle.load), sign);
   }
   out += '\n';
   for (const LoadReport::Tool& tool : load.tools) {

@@ -22,15 +22,15 @@ struct Span {
 
 /// A machine with a drive that tells its load late, with noise, in steps.
 struct Machine {
-  double idle_w = 300;          ///< at 8000 rpm; as the speed
-  double lag_s = 0.3;           ///< of its filter
-  double noise_w = 15;          ///< standard deviation
-  double step = 0.1;            ///< of the number
-  double offset = 0;            ///< of the number, percent
-  double period_s = 0.02;       ///< from sample to sample
-  double freezes_s = 1e9;       ///< the number stands still from then on
-  double goes_s = 1e9;          ///< there is none from then on
-  double spin_up_s = 0;         ///< after each change of the speed it takes three times as much
+  double idle_w = 300;     ///< at 8000 rpm; as the speed
+  double lag_s = 0.3;      ///< of its filter
+  double noise_w = 15;     ///< standard deviation
+  double step = 0.1;       ///< of the number
+  double offset = 0;       ///< of the number, percent
+  double period_s = 0.02;  ///< from sample to sample
+  double freezes_s = 1e9;  ///< the number stands still from then on
+  double goes_s = 1e9;     ///< there is none from then on
+  double spin_up_s = 0;    ///< after each change of the speed it takes three times as much
   bool tells_rpm = true;
 };
 
@@ -67,8 +67,7 @@ struct Shop {
         const double true_w = idle_w + span.takes * span.nominal_w;
         shown_w += (true_w - shown_w) * std::min(1.0, machine.period_s / machine.lag_s);
         const double percent = (shown_w + machine.noise_w * noise(random)) / 2000 * 100;
-        const double number =
-            std::round(percent / machine.step) * machine.step + machine.offset;
+        const double number = std::round(percent / machine.step) * machine.step + machine.offset;
         if (t_s < machine.freezes_s) frozen = number;
         AxisSample sample;
         sample.tool = span.tool;

@@ -71,8 +71,15 @@ void CutLoads::note(Trouble trouble, const Part& part, double value, const Value
 void CutLoads::take(const Part& part) {
   if (tool_ == nullptr || part.way.seconds <= 0) return;
   const bool is_engaged = part.look.is_engaged();
-  asked_ = {part.start_s, part.way.seconds, tool_->number, part.source, part.rpm, is_engaged,
-            !is_engaged,  {},               {}};
+  asked_ = {part.start_s,
+            part.way.seconds,
+            tool_->number,
+            part.source,
+            part.rpm,
+            is_engaged,
+            !is_engaged,
+            {},
+            {}};
   weigh(part);
   if (hearer_) hearer_(asked_);
 }
