@@ -16,7 +16,7 @@ namespace kerf {
 namespace {
 
 /// Calls in calls.
-constexpr std::size_t kDeepest = 10;
+constexpr std::size_t kDeepestCalls = 10;
 
 /// An O-word's line.
 struct Control {
@@ -370,7 +370,7 @@ class Unroller {
       arguments.push_back(*value);
       at = skip_blanks(code_[index], at);
     }
-    if (returns_.size() >= kDeepest) {
+    if (returns_.size() >= kDeepestCalls) {
       fail(index, tr("subroutines call each other too deeply"));
       return index;
     }
