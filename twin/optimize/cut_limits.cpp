@@ -57,8 +57,18 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
   model_.emplace(*material_, profile_, edges, rake_deg_);
 }
 
+double CutLimits::outline_mm2(const EngagementLook& look) const {
+  const MillingCut cut = cut_of(look, 0);
+  return profile_.sum_to(cut.deep_mm).half_mm2 *
+         (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
+}
+
 double CutLimits::section_mm2(const EngagementLook& look) const {
-  if (!look.is_plunge) return look.wide_mm * look.deep_mm;
+  // No more is cut than as wide and as high as that, and of what is not flat no more than the
+  // outline has between the angles.
+  const double all_mm2 = look.wide_mm * look.deep_mm;
+  if (!look.is_plunge && is_rounded_) return std::min(all_mm2, outline_mm2(look));
+  if (!look.is_plunge) return all_mm2;
   const double wide_mm = std::min(2 * radius_mm_, look.wide_mm + kDiscStep * 2 * radius_mm_);
   return kPi / 4 * wide_mm * wide_mm;
 }
@@ -87,10 +97,7 @@ void CutLimits::add_forces(const EngagementLook& look, double rpm, Place& place)
   } else {
     const MillingCut cut = cut_of(look, rpm);
     const MillingLoad load = model_->load_of(cut);
-    // Of what is not flat the engagement is not the same all over the height: no more is cut than
-    // as wide and as high as that.
-    const double all_mm2 =
-        profile_.sum_to(cut.deep_mm).half_mm2 * (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
+    const double all_mm2 = outline_mm2(look);
     const double share = all_mm2 > 0 ? std::min(1.0, section_mm2(look) / all_mm2) : 1;
     force_n = share * load.force_n.high;
     power_w = share * load.power_w.high;

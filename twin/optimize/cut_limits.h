@@ -92,6 +92,8 @@ class CutLimits {
   double section_mm2(const EngagementLook& look) const;
 
  private:
+  /// Of the tool's outline up to that depth, as wide as the engagement is.
+  double outline_mm2(const EngagementLook& look) const;
   void add_forces(const EngagementLook& look, double rpm, Place& place) const;
 
   int teeth_ = 0;

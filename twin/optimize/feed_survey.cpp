@@ -150,24 +150,28 @@ void FeedSurvey::limit_rates(std::size_t from, std::size_t to, double share) {
   }
 }
 
-/// Width times depth is more than the section of what a ball takes. What motions in a row have
-/// removed says how much more.
+/// The section that is seen ahead of a ball is more than what it takes beside an earlier pass. What
+/// motions in a row have removed says how much more; not where the tool enters or leaves material
+/// meanwhile.
 void FeedSurvey::limit_rates() {
   std::size_t from = 0;
   double removed_mm3 = 0, most_mm3 = 0, way_mm = 0;
+  bool has_end = false;
   const auto close = [&](std::size_t to) {
-    const double share = most_mm3 > 0 ? std::min(1.0, removed_mm3 / most_mm3) : 1;
-    limit_rates(from, to, share > 0 ? share : 1);
+    const bool is_within = !has_end && most_mm3 > 0 && removed_mm3 > 0;
+    limit_rates(from, to, is_within ? std::min(1.0, removed_mm3 / most_mm3) : 1);
     from = to;
     removed_mm3 = most_mm3 = way_mm = 0;
+    has_end = false;
   };
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     const SurveyedMotion& motion = motions_[i];
     const auto its = std::span(parts_).subspan(motion.first_part, motion.parts);
-    if (!its.empty() && its.front().is_fresh) close(i);
     removed_mm3 += motion.removed_mm3;
     double diameter_mm = 0;
     for (const SurveyedPart& part : its) {
+      // Softened are half a diameter behind the entry and ahead of the exit.
+      has_end = has_end || part.is_fresh || !part.is_engaged || part.soft_mm() > 0;
       if (!part.is_engaged) continue;
       way_mm += part.length_mm;
       most_mm3 += part.section_mm2 * part.length_mm;
