@@ -59,8 +59,7 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
 
 double CutLimits::outline_mm2(const EngagementLook& look) const {
   const MillingCut cut = cut_of(look, 0);
-  return profile_.sum_to(cut.deep_mm).half_mm2 *
-         (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
+  return profile_.sum_to(cut.deep_mm).half_mm2 * (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
 }
 
 double CutLimits::section_mm2(const EngagementLook& look) const {

@@ -82,7 +82,7 @@ Control control_of(std::string_view code) {
 
 class Unroller {
  public:
-  explicit Unroller(const NcText& text) : text_(text) {}
+  Unroller(const NcText& text, std::size_t most_lines) : text_(text), most_lines_(most_lines) {}
 
   Result<UnrolledText> run() {
     read_controls();
@@ -147,9 +147,9 @@ class Unroller {
     out_.text += text;
     if (!text.ends_with('\n')) out_.text += '\n';
     out_.line_before.push_back(number);
-    if (out_.line_before.size() <= kMostUnrolledLines) return true;
+    if (out_.line_before.size() <= most_lines_) return true;
     return fail(number > 0 ? number - 1 : 0,
-                trf("more than {} lines would come of it", kMostUnrolledLines));
+                trf("more than {} lines would come of it", most_lines_));
   }
   bool remark(std::size_t index, std::size_t pass) {
     const Control& control = controls_[index];
@@ -199,8 +199,10 @@ class Unroller {
   bool copy(std::size_t index) {
     const std::string& code = code_[index];
     const bool is_plain = code.find_first_of("#[") == std::string::npos;
-    note_end(code);
-    if (is_plain) return emit(line(index), static_cast<std::uint32_t>(index + 1));
+    if (is_plain) {
+      note_end(code);
+      return emit(line(index), static_cast<std::uint32_t>(index + 1));
+    }
     struct Setting {
       NcExpression::Place place;
       double value = 0;
@@ -225,6 +227,7 @@ class Unroller {
       const char c = code[at];
       out += whole[at++];
       if (!is_letter(c) && c != '@' && c != '^') continue;
+      if (to_lower(c) == 'o') return fail(index, tr("an O-word behind something else"));
       has_words = true;
       const std::size_t value_at = skip_blanks(code, at);
       if (value_at >= code.size()) continue;
@@ -250,6 +253,7 @@ class Unroller {
     }
     const bool is_empty = trim(out, [](char c) { return is_line_blank(c) || c == '\n'; }).empty();
     if (!has_words && is_empty) return true;
+    note_end(without_comments(out));
     return emit(out, static_cast<std::uint32_t>(index + 1));
   }
 
@@ -317,7 +321,7 @@ class Unroller {
 
   bool next_pass(std::size_t begin) {
     ++out_.passes;
-    if (out_.passes > kMostUnrolledLines) return fail(begin, tr("a loop that does not end"));
+    if (out_.passes > most_lines_) return fail(begin, tr("a loop that does not end"));
     return remark(begin, ++loop_of(begin).passes);
   }
   std::size_t end_loop(std::size_t begin) {
@@ -404,6 +408,7 @@ class Unroller {
   }
 
   const NcText& text_;
+  const std::size_t most_lines_;
   std::vector<std::string> code_;  ///< lines without comments
   std::vector<Control> controls_;
   /// Of the first line of what belongs together the last, and the other way round; of break,
@@ -421,6 +426,8 @@ class Unroller {
 
 }  // namespace
 
-Result<UnrolledText> unroll(const NcText& text) { return Unroller(text).run(); }
+Result<UnrolledText> unroll(const NcText& text, std::size_t most_lines) {
+  return Unroller(text, most_lines).run();
+}
 
 }  // namespace kerf

@@ -28,6 +28,6 @@ inline constexpr std::size_t kMostUnrolledLines = 500'000;
 /// remark ahead of it that names its line. Error, with the line: what cannot be known from the
 /// text (parameters that the machine sets, subroutines in other files, block delete of what
 /// decides). Whether it goes the same way is for the interpreter to say.
-Result<UnrolledText> unroll(const NcText& text);
+Result<UnrolledText> unroll(const NcText& text, std::size_t most_lines = kMostUnrolledLines);
 
 }  // namespace kerf

@@ -131,6 +131,7 @@ TEST(Unroll, SaysWhatItCannotFollow) {
       {"/#1=2\nG0 X#1\nM2\n", "may be deleted"},
       {"/o1 if [1]\no1 endif\nM2\n", "may be deleted"},
       {"M98 P100\nM2\n", "M98"},
+      {"#1=2 o1 call\nM2\n", "behind something else"},
       {"#5220=1\nM2\n", "which is the machine's"},
       {"o1 sub\no1 call\no1 endsub\no1 call\nM2\n", "too deeply"},
   };
