@@ -130,7 +130,7 @@ TEST(CsvLog, ReadsTheShapesOfManyPrograms) {
 TEST(CsvLog, ReadsTheLoadOfTheSpindle) {
   const TestFolder folder;
   const ReadLog log =
-      read_log({folder.write("a.csv", "t,x,load_nm\n0,1,2.5\n1,1,\n2,1,-\n3,1,1e6\n")});
+      read_log(log_at(folder.write("a.csv", "t,x,load_nm\n0,1,2.5\n1,1,\n2,1,-\n3,1,1e6\n")));
   ASSERT_EQ(log.samples.size(), 3U);
   EXPECT_EQ(log.samples[0].load, 2.5);
   EXPECT_EQ(log.samples[0].load_unit, LoadUnit::kNewtonMetres);
@@ -158,7 +158,7 @@ TEST(CsvLog, ReadsTheLoadFromTheColumnThatIsChosen) {
 
 TEST(CsvLog, TwoLoadsAreNotClear) {
   const TestFolder folder;
-  const ReadLog log = read_log({folder.write("a.csv", "t,x,load_kw,load_nm\n0,1,50,9\n")});
+  const ReadLog log = read_log(log_at(folder.write("a.csv", "t,x,load_kw,load_nm\n0,1,50,9\n")));
   EXPECT_FALSE(log.is_open);
 }
 

@@ -497,14 +497,15 @@ TEST(Recorder, KeepsTheLoadOfTheSpindle) {
   }
   EXPECT_EQ(recorder.value()->finish().trouble, "");
   EXPECT_NE(read_text(folder.file("a.csv")).find("spindle_rpm,load_kw\n"), std::string::npos);
-  const ReadLog log = read_log({folder.file("a.csv")});
+  const ReadLog log = read_log(log_at(folder.file("a.csv")));
   ASSERT_EQ(log.samples.size(), 3U);
   EXPECT_EQ(log.contents.load, LoadUnit::kKilowatts);
   EXPECT_EQ(log.contents.recording->load, LoadUnit::kKilowatts);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(log.samples[i].load),
               std::bit_cast<std::uint64_t>(kLoads[i]));
-    if (i != 1) EXPECT_EQ(log.samples[i].load_unit, LoadUnit::kKilowatts);
+    if (i == 1) continue;
+    EXPECT_EQ(log.samples[i].load_unit, LoadUnit::kKilowatts);
   }
 }
 

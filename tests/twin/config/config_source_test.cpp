@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/twin/config/config_support.h"
-#include "twin/config/config_print.h"
 
 namespace kerf {
 namespace {
@@ -400,7 +399,7 @@ TEST(ConfigHal, Faults) {
 // ---- the spindle's load
 
 TEST(ConfigLoad, ComesFromARegisterAFrameOrAPin) {
-  const auto& modbus = settings_of<ModbusSettings>(
+  const auto modbus = settings_of<ModbusSettings>(
       ReadText(kTcp + "  map:\n    X: {register: 0}\n    load: {register: 20, type: uint16, scale: "
                       "0.1, unit: percent-torque}\n"));
   ASSERT_TRUE(modbus.load);
@@ -408,19 +407,19 @@ TEST(ConfigLoad, ComesFromARegisterAFrameOrAPin) {
   EXPECT_EQ(modbus.load->scale, 0.1);
   EXPECT_EQ(modbus.load_unit, LoadUnit::kPercentOfTorque);
   // A length it is not, whatever the lengths are in.
-  const auto& can = settings_of<CanSourceOptions>(
+  const auto can = settings_of<CanSourceOptions>(
       ReadText("source: {type: can, interface: can0, units: inch, map: {X: {id: 1}, load: {id: 2, "
                "scale: 0.5, unit: kW}}}\n"));
   ASSERT_TRUE(can.map.load);
   EXPECT_EQ(can.map.load->scale, 0.5);
   EXPECT_EQ(can.map.load_unit, LoadUnit::kKilowatts);
-  const auto& hal = settings_of<HalSettings>(
+  const auto hal = settings_of<HalSettings>(
       ReadText("source: {type: hal, map: {load: {pin: vfd.amps, unit: A, scale: 2}}}\n"));
   ASSERT_TRUE(hal.load);
   EXPECT_EQ(hal.load->pin, "vfd.amps");
   EXPECT_EQ(hal.load->unit, LoadUnit::kAmperes);
   EXPECT_EQ(hal.load->scale, 2);
-  const auto& log = settings_of<LogSettings>(ReadText(
+  const auto log = settings_of<LogSettings>(ReadText(
       "source: {type: log, file: a, map: {load: {pin: Spindle Load, unit: Nm, offset: -1}}}\n"));
   ASSERT_TRUE(log.load);
   EXPECT_FALSE(log.can_map);
