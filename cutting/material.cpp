@@ -1,6 +1,7 @@
 #include "cutting/material.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>

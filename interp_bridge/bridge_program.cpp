@@ -1,6 +1,7 @@
 // A program read by kerf-interp, where it stands.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -322,6 +323,12 @@ void BridgeProgram::report_exit(InterpreterProcess::Exit exit, const Reading& re
   }
   if (!reading.records.ended()) {
     std::string said = reading.stderr_text.substr(0, reading.stderr_text.find('\n'));
+    if (said.find("error while loading shared libraries") != said.npos) {
+      report(Severity::kError, reading.records.place(),
+             trf("LinuxCNC's interpreter is not installed, or not all of it: {}", said),
+             tr("sudo apt install --no-remove linuxcnc-uspace"), reading);
+      return;
+    }
     report(Severity::kError, reading.records.place(),
            said.empty() ? trf("kerf-interp ended with status {} in the middle", exit.status)
                         : trf("kerf-interp ended in the middle: {}", said),

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 
 bool is_held_back(const Motion& m) {
@@ -10,8 +12,8 @@ bool is_held_back(const Motion& m) {
   if (m.kind != MotionKind::kArc || m.path_mode != PathMode::kContinuous) return false;
   if (std::abs(m.arc.axis.z) < 0.9999) return false;
   const double radius =
-      std::hypot(m.from_mm.x - m.arc.center_mm.x, m.from_mm.y - m.arc.center_mm.y);
-  const double sagitta = radius * (1 - std::cos(m.arc.sweep_rad / 2));
+      portable::hypot(m.from_mm.x - m.arc.center_mm.x, m.from_mm.y - m.arc.center_mm.y);
+  const double sagitta = radius * (1 - portable::cos(m.arc.sweep_rad / 2));
   return std::abs(m.arc.sweep_rad) < 2 * kPi && sagitta < double{m.merge_tolerance_mm};
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "interp_bridge/motion_fold.h"
 #include "interp_bridge/motion_fold_math.h"
@@ -46,7 +47,7 @@ double arc_sweep_rad(const Vec2& start, const Vec2& end, int turns, double resol
   const double start_radius = glm::length(start);
   const double end_radius = glm::length(end);
   const double cross = start.x * end.y - start.y * end.x;
-  double sweep = direction * std::atan2(cross, glm::dot(start, end));
+  double sweep = direction * portable::atan2(cross, glm::dot(start, end));
   // Rounding to four decimals turns the ends about the centre by up to one digit, so a full turn
   // may show as a sliver. It is one if nothing but rounding separates the ends, or if they lie on
   // one ray at different radii (a spiral).

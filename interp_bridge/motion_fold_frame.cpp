@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "interp_bridge/motion_fold.h"
 #include "interp_bridge/motion_fold_math.h"
@@ -20,7 +21,7 @@ std::pair<double, double> cos_sin(double degrees) {
     return kQuarters[static_cast<std::size_t>(static_cast<std::int64_t>(quarter) & 3)];
   }
   const double radians = degrees * kRadPerDeg;
-  return {std::cos(radians), std::sin(radians)};
+  return {portable::cos(radians), portable::sin(radians)};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Tips of tools whose length is not the offset in force: where they really are.
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "interp_bridge/motion_fold.h"
 
@@ -10,8 +11,8 @@ namespace kerf {
 Vec3 MotionFold::along_work(const Vec3& v_mm) const {
   if (work_.rotation_deg == 0) return v_mm;
   const double angle = -work_.rotation_deg * kRadPerDeg;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
+  const double c = portable::cos(angle);
+  const double s = portable::sin(angle);
   return {c * v_mm.x - s * v_mm.y, s * v_mm.x + c * v_mm.y, v_mm.z};
 }
 

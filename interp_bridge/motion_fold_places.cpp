@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "interp_bridge/held_feed.h"
 #include "interp_bridge/motion_fold.h"
@@ -410,8 +411,8 @@ void MotionFold::adopt_frame() {
   std::uint8_t free = without(kXyz, placed_);
   if (is_turned && (free & kXy) != kXy) free &= kZ;
   if (free == 0) return;
-  const auto cosine = [](double degrees) { return std::cos(degrees * kRadPerDeg); };
-  const auto sine = [](double degrees) { return std::sin(degrees * kRadPerDeg); };
+  const auto cosine = [](double degrees) { return portable::cos(degrees * kRadPerDeg); };
+  const auto sine = [](double degrees) { return portable::sin(degrees * kRadPerDeg); };
   double degrees = work_.rotation_deg;
   const Vec3 machine_mm =
       turned(position_mm_ + work_.g92_mm, cosine(degrees), sine(degrees)) + work_.g5x_mm;

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <string_view>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "interp_bridge/motion_fold.h"
 
@@ -161,8 +162,8 @@ void MotionFold::append_overburn(const Motion& hole, std::vector<Motion>& out) {
   if (angle_rad == 0 || !std::isfinite(angle_rad)) return;
   torch_off_by_filter_ = true;
   set_bit(torch_.outputs, TorchState::kTorchOff, true);
-  const Vec3 turned_mm =
-      std::cos(angle_rad) * radius_mm + std::sin(angle_rad) * glm::cross(hole.arc.axis, radius_mm);
+  const Vec3 turned_mm = portable::cos(angle_rad) * radius_mm +
+                         portable::sin(angle_rad) * glm::cross(hole.arc.axis, radius_mm);
   Motion& more = append(MotionKind::kArc, hole.source, out);
   more.torch.overburn = true;
   more.arc = {hole.arc.center_mm, hole.arc.axis, angle_rad};

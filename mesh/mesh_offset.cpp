@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "mesh/smooth_skin.h"
 #include "mesh/surface_sides.h"
@@ -28,8 +29,8 @@ class Grower {
   Grower(const MeshBody& body, double allowance_mm)
       : body_(body),
         allowance_(allowance_mm),
-        step_rad_(2 * std::acos(1 - std::min(1.0, kRounding_mm / allowance_mm))),
-        least_cosine_(std::cos(kSide * step_rad_)),
+        step_rad_(2 * portable::acos(1 - std::min(1.0, kRounding_mm / allowance_mm))),
+        least_cosine_(portable::cos(kSide * step_rad_)),
         out_{body.mesh.positions_mm, {}} {}
 
   bool add_all() {
@@ -171,7 +172,7 @@ class Grower {
     const auto& far = body_.mesh.triangles[other / 3];
     const Vec3 beyond = position(far[(other + 2) % 3]) - position(a);
     if (glm::dot(beyond, n) > 0) return;  // it lies deep: the faces' pieces overlap
-    const double angle = std::acos(std::clamp(glm::dot(n, m), -1.0, 1.0));
+    const double angle = portable::acos(std::clamp(glm::dot(n, m), -1.0, 1.0));
     const int parts = static_cast<int>(std::ceil(angle / step_rad_));
     // About the edge, from one face to the other.
     const Vec3 side = glm::cross(n, glm::normalize(position(b) - position(a)));
@@ -179,7 +180,7 @@ class Grower {
     Vec3 from = n;
     for (int p = 1; p <= parts; ++p) {
       const double turn = angle * p / parts;
-      const Vec3 to = p == parts ? m : std::cos(turn) * n + std::sin(turn) * sense * side;
+      const Vec3 to = p == parts ? m : portable::cos(turn) * n + portable::sin(turn) * sense * side;
       add_prism({position(a), out(a, from), out(a, to)}, {position(b), out(b, from), out(b, to)});
       from = to;
     }

@@ -28,9 +28,12 @@ std::string step_program() {
   if (const char* const named = std::getenv("KERF_STEP"); named != nullptr && *named != '\0')
     return named;
   std::error_code none;
-  const std::filesystem::path beside =
-      std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "kerf-step";
-  if (!none && ::access(beside.c_str(), X_OK) == 0) return beside.string();
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+  for (const char* const place : {"kerf-step", "../lib/kerf/kerf-step"}) {
+    const std::filesystem::path beside = folder / place;
+    if (!none && ::access(beside.c_str(), X_OK) == 0) return beside.string();
+  }
   return "kerf-step";
 }
 

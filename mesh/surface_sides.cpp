@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 
 namespace kerf {
 namespace {
@@ -60,7 +61,7 @@ Faces faces_of(const TriangleMesh& mesh, MeshFacts& facts) {
     std::array<double, 3> angles{};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
-      angles[k] = std::atan2(length, glm::dot(u, v));
+      angles[k] = portable::atan2(length, glm::dot(u, v));
     }
     faces.angles_rad.push_back(angles);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/portable_math.h"
 #include "base/suggest.h"
 #include "base/translate.h"
 #include "mesh/mesh_body.h"
@@ -110,7 +111,7 @@ Result<BlankBody> parse_bar(const std::vector<std::string_view>& fields, int fla
   body.flats = flats;
   const double half = *across / 2;
   // A flat towards +X: of six, corners towards +Y and -Y.
-  const double high = flats == 6 ? half / std::cos(kPi / 6) : half;
+  const double high = flats == 6 ? half / portable::cos(kPi / 6) : half;
   body.bounds_mm = Box{*center - Vec3(half, high, 0), *center + Vec3(half, high, 0)};
   body.bounds_mm.max.z = *end;
   return body;

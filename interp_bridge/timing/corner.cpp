@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -69,7 +71,7 @@ void set_half_angle(BlendPlan& plan) {
   plan.cos_turn = c;
   plan.cos_half = std::sqrt((1.0 - c) / 2.0);
   plan.sin_half = std::sqrt((1.0 + c) / 2.0);
-  plan.turn = std::acos(c);
+  plan.turn = portable::acos(c);
 }
 
 /// The greatest speed whose X, Y, Z shares stay in bounds on the whole arc between two lines.
@@ -138,7 +140,7 @@ CurvedArm curve_arm(BlendPlan& plan, const Segment& arc, bool at_end) {
   const double outward = glm::dot(other, corner - arc.arc.center_mm);
   arm.inside = at_end ? outward < 0 : outward >= 0;
   arm.radius = arc.radius_mm;
-  const double half_angle = std::atan2(plan.sin_half, plan.cos_half);
+  const double half_angle = portable::atan2(plan.sin_half, plan.cos_half);
   const double left = std::abs(arc.arc.sweep_rad) - arc.trim_from - arc.trim_to;
   const double share = at_end ? 2.0 / 3.0 : 1.0 / 3.0;
   arm.most_rad = std::min(left * share, arm.inside ? half_angle : kPi / 2);
@@ -158,7 +160,7 @@ void bend_arm(BlendPlan& plan, const Segment& arc, const CurvedArm& arm, bool at
   } else {
     plan.u1 = glm::normalize(arc.arc_point(arm.most_rad / 2) - arc.from);
   }
-  room = std::sin(arm.most_rad / 4) * arm.radius;
+  room = portable::sin(arm.most_rad / 4) * arm.radius;
   theta -= arm.most_rad / 4;
 }
 
@@ -166,7 +168,7 @@ void bend_arm(BlendPlan& plan, const Segment& arc, const CurvedArm& arm, bool at
 double trim_angle(const Vec3& corner, const Vec3& blend_center, const Vec3& arc_center) {
   const Vec3 a = glm::normalize(corner - arc_center);
   const Vec3 b = glm::normalize(blend_center - arc_center);
-  return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+  return portable::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
 }
 
 struct BlendPlace {
@@ -228,7 +230,7 @@ bool plan_with_arcs(const AxisRates& rates, BlendPlan& plan, const Segment& prev
   if (arc0 && !coplanar(plan.binormal, previous)) return false;
   if (arc1 && !coplanar(plan.binormal, next)) return false;
   const Vec3 corner = next.from;
-  double theta = std::atan2(plan.sin_half, plan.cos_half);
+  double theta = portable::atan2(plan.sin_half, plan.cos_half);
   CurvedArm arm0, arm1;
   if (arc0) arm0 = curve_arm(plan, previous, true);
   if (arc1) arm1 = curve_arm(plan, next, false);
@@ -238,8 +240,8 @@ bool plan_with_arcs(const AxisRates& rates, BlendPlan& plan, const Segment& prev
   if (arc1) bend_arm(plan, next, arm1, false, theta);
   // Between two arcs, and only there, LinuxCNC refuses tight corners.
   if (theta < (arc0 && arc1 ? kPi / 12 : kAngleEpsilon)) return false;
-  plan.sin_half = std::sin(theta);
-  plan.cos_half = std::cos(theta);
+  plan.sin_half = portable::sin(theta);
+  plan.cos_half = portable::cos(theta);
   plan.turn = kPi - 2 * theta;
   if (!solve_plan(rates, plan, previous, next)) return false;
   bool placed = false;
@@ -294,7 +296,7 @@ bool make_blend(const AxisRates& rates, const BlendPlan& plan, const BlendPlace&
   blend.radius_mm = glm::length(r0);
   if (blend.radius_mm <= 0) return false;
   const double c = glm::dot(r0, r1) / (blend.radius_mm * glm::length(r1));
-  blend.arc = {place.center, plan.binormal, std::acos(std::clamp(c, -1.0, 1.0))};
+  blend.arc = {place.center, plan.binormal, portable::acos(std::clamp(c, -1.0, 1.0))};
   blend.length_mm = blend.radius_mm * blend.arc.sweep_rad;
   if (blend.length_mm < kLeastArc_mm) return false;
   blend.nominal_mm = blend.length_mm;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "interp_bridge/timing/lookahead.h"
 #include "interp_bridge/timing/merge.h"
@@ -45,11 +46,12 @@ bool flat_arc(const Motion& m, Vec3& middle) {
   if (m.path_mode != PathMode::kContinuous || m.merge_tolerance_mm <= 0) return false;
   if (std::abs(m.arc.axis.z) < 0.9999 || std::abs(m.arc.sweep_rad) >= 2 * kPi) return false;
   const Vec3 out = m.from_mm - m.arc.center_mm;
-  const double radius = std::hypot(out.x, out.y);
+  const double radius = portable::hypot(out.x, out.y);
   const double half = m.arc.sweep_rad / 2 * (m.arc.axis.z < 0 ? -1.0 : 1.0);
-  if (radius * (1.0 - std::cos(half)) >= static_cast<double>(m.merge_tolerance_mm)) return false;
-  const double c = std::cos(half);
-  const double s = std::sin(half);
+  if (radius * (1.0 - portable::cos(half)) >= static_cast<double>(m.merge_tolerance_mm))
+    return false;
+  const double c = portable::cos(half);
+  const double s = portable::sin(half);
   middle = {m.arc.center_mm.x + c * out.x - s * out.y, m.arc.center_mm.y + s * out.x + c * out.y,
             (m.from_mm.z + m.to_mm.z) / 2};
   return true;

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -19,7 +21,7 @@ constexpr std::size_t kFirstCapacity = 1024;
 
 /// `r` turned about the unit vector `axis`, to which it is normal.
 Vec3 turned(const Vec3& r, const Vec3& axis, double angle) {
-  return std::cos(angle) * r + std::sin(angle) * glm::cross(axis, r);
+  return portable::cos(angle) * r + portable::sin(angle) * glm::cross(axis, r);
 }
 
 }  // namespace

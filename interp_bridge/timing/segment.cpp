@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -132,14 +134,14 @@ Segment make_arc(const AxisRates& rates, const Motion& motion, double speed) {
   const double turn = std::abs(motion.arc.sweep_rad);
   const double growth = parts.radius_to - parts.radius_from;
   const double around = turn * 0.5 * (parts.radius_from + parts.radius_to);
-  const double planar = std::hypot(around, growth);
+  const double planar = portable::hypot(around, growth);
   Segment segment;
   segment.shape = SegmentShape::kArc;
   segment.from = motion.from_mm;
   segment.to = motion.to_mm;
   segment.arc = motion.arc;
   segment.radius_mm = std::min(parts.radius_from, parts.radius_to);
-  segment.length_mm = std::hypot(planar, parts.rise);
+  segment.length_mm = portable::hypot(planar, parts.rise);
   segment.nominal_mm = segment.length_mm;
 
   const StraightRates chord =
@@ -178,7 +180,7 @@ Vec3 Segment::arc_point(double angle) const {
   const double radius = parts.radius_from + part * (parts.radius_to - parts.radius_from);
   const Vec3 foot = from - parts.across_from;
   return foot + part * parts.rise * arc.axis +
-         radius * (std::cos(angle) * out + std::sin(angle) * side);
+         radius * (portable::cos(angle) * out + portable::sin(angle) * side);
 }
 
 Vec3 Segment::point_at(double way_mm) const {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -28,7 +30,8 @@ double x_at(const Motion& m, double share) {
   const double grown = radius > 0 ? 1 + share * (last / radius - 1) : 1;
   const double angle = share * m.arc.sweep_rad;
   const Vec3 side = glm::cross(m.arc.axis, flat);
-  return m.arc.center_mm.x + grown * (std::cos(angle) * flat.x + std::sin(angle) * side.x) +
+  return m.arc.center_mm.x +
+         grown * (portable::cos(angle) * flat.x + portable::sin(angle) * side.x) +
          (along + share * rise) * m.arc.axis.x;
 }
 

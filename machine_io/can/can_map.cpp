@@ -1,6 +1,7 @@
 #include "machine_io/can/can_map.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,7 @@
 #include "machine_io/can/dbc_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

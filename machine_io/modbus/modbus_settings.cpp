@@ -1,6 +1,7 @@
 #include "machine_io/modbus/modbus_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

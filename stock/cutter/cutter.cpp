@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -53,7 +54,7 @@ std::string arc_fault(const ProfilePiece& arc) {
   for (const bool outer : {false, true}) {
     const double r = outer ? arc.r1 : arc.r0;
     const double z = outer ? arc.z1 : arc.z0;
-    const double distance = std::hypot(r - arc.center_r, z - arc.center_z);
+    const double distance = portable::hypot(r - arc.center_r, z - arc.center_z);
     if (std::abs(distance - arc.radius) > kJoinTolerance_mm) {
       return trf("the {} end is {} mm from the centre, but the arc radius is {} mm",
                  outer ? tr("outer") : tr("inner"), distance, arc.radius);
@@ -74,10 +75,10 @@ std::string ends_fault(const ProfilePiece& piece, double r, double z) {
       return trf("{} is not allowed; coordinates are at most {} mm", value, kMaxProfile_mm);
     }
   }
-  if (std::hypot(piece.r0 - r, piece.z0 - z) > kJoinTolerance_mm) {
+  if (portable::hypot(piece.r0 - r, piece.z0 - z) > kJoinTolerance_mm) {
     return trf("starts at R{} Z{}, but must start at R{} Z{}", piece.r0, piece.z0, r, z);
   }
-  if (std::hypot(piece.r1 - piece.r0, piece.z1 - piece.z0) <= kJoinTolerance_mm) {
+  if (portable::hypot(piece.r1 - piece.r0, piece.z1 - piece.z0) <= kJoinTolerance_mm) {
     return tr("has no length");
   }
   return "";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/cutter/cutter.h"
 
 namespace kerf {
@@ -19,11 +20,11 @@ inline std::vector<Vec2> edge_points(const Cutter& cutter) {
     if (points.empty()) points.emplace_back(piece.r0, piece.z0);
     if (piece.kind == ProfilePiece::Kind::kArc) {
       const Vec2 center(piece.center_r, piece.center_z);
-      const double from = std::atan2(piece.z0 - center.y, piece.r0 - center.x);
-      const double to = std::atan2(piece.z1 - center.y, piece.r1 - center.x);
+      const double from = portable::atan2(piece.z0 - center.y, piece.r0 - center.x);
+      const double to = portable::atan2(piece.z1 - center.y, piece.r1 - center.x);
       for (int k = 1; k < kArcPoints; ++k) {
         const double angle = from + (to - from) * k / kArcPoints;
-        points.push_back(center + piece.radius * Vec2(std::cos(angle), std::sin(angle)));
+        points.push_back(center + piece.radius * Vec2(portable::cos(angle), portable::sin(angle)));
       }
     }
     points.emplace_back(piece.r1, piece.z1);
@@ -36,7 +37,7 @@ inline double point_deg(const Cutter& cutter) {
   const ProfilePiece& first = cutter.profile().front();
   const double rise = first.z1 - first.z0, wide = first.r1 - first.r0;
   const bool is_cone = first.kind == ProfilePiece::Kind::kLine && rise > 0 && wide > 0;
-  return is_cone ? 2 * std::atan2(wide, rise) * 180 / kPi : 180;
+  return is_cone ? 2 * portable::atan2(wide, rise) * 180 / kPi : 180;
 }
 
 }  // namespace kerf

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kMinEdge_mm = 1e-5;
 /// Flanks closer to half a turn than this have no nose between them.
 constexpr double kMinTurn_rad = 1e-6;
 
-Vec2 along(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+Vec2 along(double angle_rad) { return {portable::cos(angle_rad), portable::sin(angle_rad)}; }
 Vec2 left_of(const Vec2& v) { return {-v.y, v.x}; }
 
 bool is_size(double mm) { return mm >= 0 && mm <= kMaxInsertReach_mm; }
@@ -59,9 +61,9 @@ std::optional<InsertPart> rounded(std::span<const Corner> corners, std::vector<V
     const Corner& c = corners[i];
     const Vec2 in = glm::normalize(c.at - corners[(i + n - 1) % n].at);
     const Vec2 out = glm::normalize(corners[(i + 1) % n].at - c.at);
-    const double turn = std::atan2(in.x * out.y - in.y * out.x, glm::dot(in, out));
+    const double turn = portable::atan2(in.x * out.y - in.y * out.x, glm::dot(in, out));
     if (!(turn > kMinTurn_rad)) return std::nullopt;
-    const double back = c.radius * std::tan(turn / 2);
+    const double back = c.radius * portable::tan(turn / 2);
     used[i] += back;
     used[(i + n - 1) % n] += back;
     arcs[i] = {c.at - back * in, c.at + back * out, c.at - back * in + c.radius * left_of(in)};
@@ -173,9 +175,10 @@ const IsoShape* shape_of(char letter) {
 /// begins at the nose, counter-clockwise.
 double side_mm(const IsoShape& shape, double circle, bool first) {
   if (shape.equal_sides) {
-    return circle / 2 * (1 / std::tan(shape.nose_rad / 2) + 1 / std::tan(shape.other_rad / 2));
+    return circle / 2 *
+           (1 / portable::tan(shape.nose_rad / 2) + 1 / portable::tan(shape.other_rad / 2));
   }
-  return first ? circle * kLongOfK : circle / std::sin(shape.nose_rad);
+  return first ? circle * kLongOfK : circle / portable::sin(shape.nose_rad);
 }
 
 }  // namespace
@@ -247,7 +250,7 @@ std::optional<InsertOutline> groove_insert(const GrooveInsert& insert) {
   const double across = insert.axial ? direction->y : direction->x;
   // The sides begin to run back above the rounded corners, which make the width.
   const bool has_land = r > 0 && insert.relief_rad > 0;
-  const double narrower = (length - r) * std::tan(insert.relief_rad);
+  const double narrower = (length - r) * portable::tan(insert.relief_rad);
   if (deep == 0 || 2 * narrower >= w || r > length) return std::nullopt;
   const double from = across > 0 ? 0 : across < 0 ? -w : -w / 2;
   std::vector<Corner> corners{Corner{{from, 0}, r, InsertSide::kNose, InsertSide::kNose},
@@ -281,7 +284,7 @@ std::optional<InsertOutline> thread_insert(const ThreadInsert& insert) {
     return std::nullopt;
   }
   const double half = insert.flat_mm / 2;
-  const double wide = half + insert.depth_mm * std::tan(insert.angle_rad / 2);
+  const double wide = half + insert.depth_mm * portable::tan(insert.angle_rad / 2);
   if (!is_size(wide)) return std::nullopt;
   const Vec2 low{-half, 0}, high{half, 0};
   InsertPart part;

@@ -1,6 +1,7 @@
 #include "stock/cutter/iso_code.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

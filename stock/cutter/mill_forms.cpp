@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/units.h"
 #include "stock/cutter/scan.h"
@@ -105,7 +106,7 @@ void add_bull(MillBody& body, double radius, double corner) {
 /// Flat tip, cone up to `radius`.
 void add_cone(MillBody& body, double tip_radius, double radius, double half_angle_deg) {
   if (tip_radius > 0) body.pieces.push_back(line_piece(0, 0, tip_radius, 0));
-  const double height = (radius - tip_radius) / std::tan(half_angle_deg * kRadPerDeg);
+  const double height = (radius - tip_radius) / portable::tan(half_angle_deg * kRadPerDeg);
   body.pieces.push_back(line_piece(tip_radius, 0, radius, height));
 }
 
@@ -181,14 +182,14 @@ Result<MillBody> make_taper(const Values& values, const ShapeOptions& options) {
   }
   const double center_r = flat_radius(*d / 2, corner);
   if (corner > 0) corner = *d / 2 - center_r;
-  const double r = center_r + corner * std::cos(*angle * kRadPerDeg);
-  const double z = corner * (1 - std::sin(*angle * kRadPerDeg));
+  const double r = center_r + corner * portable::cos(*angle * kRadPerDeg);
+  const double z = corner * (1 - portable::sin(*angle * kRadPerDeg));
   const double top = options.flute_mm.value_or(kTaperHeightPerTip * *d);
   if (top < z + kMinLength_mm) {
     return Error{trf("flute={} ends below the cone, which begins {:.4g} mm above the tip",
                      number_text(top), z)};
   }
-  const double top_r = r + (top - z) * std::tan(*angle * kRadPerDeg);
+  const double top_r = r + (top - z) * portable::tan(*angle * kRadPerDeg);
   if (2 * top_r > kMaxDiameter_mm) {
     return Error{trf("the cone is {:.4g} mm wide at its top, {} mm above the tip; at most {} mm",
                      2 * top_r, number_text(top), number_text(kMaxDiameter_mm))};
@@ -248,7 +249,7 @@ Result<MillBody> make_dovetail(const Values& values) {
   MillBody body;
   body.spec =
       fmt::format("dovetail:{}:{}:{}", number_text(*d), number_text(*angle), number_text(*shaft));
-  const double height = (*d - *shaft) / 2 * std::tan(*angle * kRadPerDeg);
+  const double height = (*d - *shaft) / 2 * portable::tan(*angle * kRadPerDeg);
   if (height < kMinLength_mm || height > kMaxLength_mm) {
     return Error{trf("the head is {:.4g} mm high; must be from {} to {} (mm)", height,
                      kMinLength_mm, kMaxLength_mm)};

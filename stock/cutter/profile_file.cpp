@@ -10,6 +10,7 @@
 #include <fstream>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/small_file.h"
 #include "base/suggest.h"
 #include "base/translate.h"
@@ -126,7 +127,7 @@ class Reader {
     }
     const double dr = piece.r1 - piece.r0;
     const double dz = piece.z1 - piece.z0;
-    const double half_chord = std::hypot(dr, dz) / 2;
+    const double half_chord = portable::hypot(dr, dz) / 2;
     if (half_chord > *radius + kFitTolerance_mm / 2) {
       return Error{trf("arc radius {} is too small: the ends are {:.4g} mm apart",
                        number_text(*radius), 2 * half_chord)};
@@ -156,7 +157,7 @@ class Reader {
     const double b = arc.z1 - level;
     arc.center_z = level;
     arc.center_r = (arc.r0 + arc.r1) / 2 + (b - a) * (b + a) / (2 * (arc.r1 - arc.r0));
-    arc.radius = std::hypot(arc.r1 - arc.center_r, b);
+    arc.radius = portable::hypot(arc.r1 - arc.center_r, b);
     return std::monostate{};
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "stock/cutter/insert_shape.h"
 
@@ -52,7 +53,7 @@ bool fits_orientation(const FlankAngles& angles, int orientation) {
   if (orientation < 1 || orientation >= kOrientations) return true;
   const double middle = (angles.front_deg + angles.back_deg) / 2 * kRadPerDeg;
   const Vec2 behind = nose_direction(orientation);
-  return behind.x * std::cos(middle) + behind.y * std::sin(middle) > 0;
+  return behind.x * portable::cos(middle) + behind.y * portable::sin(middle) > 0;
 }
 
 Hand hand_of_orientation(int orientation) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -90,8 +91,8 @@ Result<FlankAngles> parse_flanks(const TurningValues& values, std::size_t index,
 
 /// 0 of a flank that leans forward, or so far back that the bar is ahead of it anyway.
 double lean_of(double front_deg) {
-  const double lean = std::abs(std::tan((front_deg - 90) * kRadPerDeg));
-  return std::cos(front_deg * kRadPerDeg) > 0 && lean < 1 ? lean : 0;
+  const double lean = std::abs(portable::tan((front_deg - 90) * kRadPerDeg));
+  return portable::cos(front_deg * kRadPerDeg) > 0 && lean < 1 ? lean : 0;
 }
 
 /// The insert of a nose and two flanks.
@@ -253,8 +254,8 @@ Made make_blade(const TurningForm& form, const TurningValues& values,
   blade.length_mm = options.edge_mm.value_or(form.name == "part" ? kPartBlade_mm : kGrooveBlade_mm);
   blade.orientation = orientation;
   blade.axial = axial;
-  blade.relief_rad =
-      std::min(kBladeRelief_deg * kRadPerDeg, std::atan(kBladeNarrows * *width / blade.length_mm));
+  blade.relief_rad = std::min(kBladeRelief_deg * kRadPerDeg,
+                              portable::atan(kBladeNarrows * *width / blade.length_mm));
   std::optional<InsertOutline> outline = groove_insert(blade);
   if (!outline) return no_turning_outline();
   MadeInsert made;
@@ -313,7 +314,7 @@ Made make_thread(const TurningValues& values, const TurningOptions& options) {
     const double radius = tip.radius * pitch;
     // A sharp profile of this depth would begin r / sin - r lower.
     const double half = *angle / 2 * kRadPerDeg;
-    const double straight = (depth - radius * (1 - std::sin(half))) / std::cos(half);
+    const double straight = (depth - radius * (1 - portable::sin(half))) / portable::cos(half);
     if (!(straight > kLeastEdge_mm)) {
       return Error{trf("edge={:g} ends within the tip's radius of {:.4g} mm", depth, radius)};
     }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
@@ -158,7 +159,7 @@ class HolderReader {
                 "convex parts",
                 b.x, b.y));
       }
-      turned += std::atan2(sine, glm::dot(glm::normalize(b - a), glm::normalize(c - b)));
+      turned += portable::atan2(sine, glm::dot(glm::normalize(b - a), glm::normalize(c - b)));
       part.push_back({b, std::nullopt, InsertSide::kHolder});
     }
     // A star turns the same way at all its corners.

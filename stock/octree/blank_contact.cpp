@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf::octree {
@@ -194,7 +195,8 @@ double BlankContact::plunge_depth_mm(const BrickTree& tree, const Vec3& tip_mm) 
     return 0;
   }
   if (body.kind != BlankBody::Kind::kBox) {
-    const double from_axis = std::hypot(tip_mm.x - body.center_mm.x, tip_mm.y - body.center_mm.y);
+    const double from_axis =
+        portable::hypot(tip_mm.x - body.center_mm.x, tip_mm.y - body.center_mm.y);
     const double inner = body.kind == BlankBody::Kind::kTube ? body.inner_diameter_mm / 2 : -1;
     if (body.axis != 'z' || from_axis >= body.diameter_mm / 2 || from_axis <= inner) return 0;
   }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/octree/blank_contact.h"
 #include "stock/octree/brick_cut.h"
 #include "stock/octree/brick_finder.h"
@@ -26,8 +27,8 @@ constexpr int kDeepest =
     40;  ///< of halving a move; its last part is shorter than kAtOnce_mm before
 
 double turn_of(const CutMove& move) {
-  return std::atan2(glm::length(glm::cross(move.axis_from, move.axis_to)),
-                    glm::dot(move.axis_from, move.axis_to));
+  return portable::atan2(glm::length(glm::cross(move.axis_from, move.axis_to)),
+                         glm::dot(move.axis_from, move.axis_to));
 }
 
 /// No point of a tool within `reach_mm` of its tip goes farther.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf::octree {
 namespace {
 
@@ -24,7 +26,7 @@ ProfileSlices::ProfileSlices(const RevolvedBody& body, const Lattice& lattice, i
   spans_.resize(layers);
   for (int flat = 0; flat < body.flats; ++flat) {
     const double angle = 2 * kPi * flat / body.flats;
-    flats_.push_back({std::cos(angle), std::sin(angle)});
+    flats_.push_back({portable::cos(angle), portable::sin(angle)});
   }
   for (const std::vector<Vec2>& chain : body.chains_mm)
     for (std::size_t i = 0, before = chain.size() - 1; i < chain.size(); before = i++)
@@ -88,7 +90,7 @@ std::size_t ProfileSlices::hits_below(int layer, double r) const {
 std::optional<BodyExit> ProfileSlices::exit_level(int layer, const Vec2& at, int axis, double sign,
                                                   double length_mm) const {
   const std::vector<Hit>& all = hits(layer);
-  const std::size_t beyond = hits_below(layer, std::hypot(at.x, at.y));
+  const std::size_t beyond = hits_below(layer, portable::hypot(at.x, at.y));
   const double x = at[axis], y = at[1 - axis];
   std::optional<BodyExit> nearest;
   const auto meet = [&](double way, const Vec3& normal) {
@@ -124,7 +126,7 @@ std::optional<BodyExit> ProfileSlices::exit_level(int layer, const Vec2& at, int
 std::optional<BodyExit> ProfileSlices::exit_upright(int layer, const Vec2& at, double sign) const {
   const int lower = sign > 0 ? layer : layer - 1;
   if (lower < first_ || lower > last_) return std::nullopt;
-  const double r = std::hypot(at.x, at.y);
+  const double r = portable::hypot(at.x, at.y);
   const double start = lattice_.place_mm(2, layer);
   std::optional<BodyExit> nearest;
   for (const Side& side : sides_[static_cast<std::size_t>(lower - first_)]) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "stock/octree/brick_tree.h"
 #include "stock/octree/revolved_cut.h"
 
@@ -29,7 +30,7 @@ class ProfileSlices {
 
   /// Is the node of this layer at (x, y) in the body?
   bool holds(int layer, const Vec2& at) const {
-    return is_within_flats(at) && is_inside(layer, std::hypot(at.x, at.y));
+    return is_within_flats(at) && is_inside(layer, portable::hypot(at.x, at.y));
   }
   /// Along x (axis 0) or y from a node that is in the body, `sign` the way, up to `length_mm`.
   std::optional<BodyExit> exit_level(int layer, const Vec2& at, int axis, double sign,

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/mesh_patch.h"
+#include "base/portable_math.h"
 
 namespace kerf::octree {
 namespace {
@@ -17,8 +18,8 @@ constexpr double kNoTurn_rad = 1e-10;
 constexpr Vec3 kUp{0, 0, 1};
 
 double turned_rad(const CutMove& move) {
-  return std::atan2(glm::length(glm::cross(move.axis_from, move.axis_to)),
-                    glm::dot(move.axis_from, move.axis_to));
+  return portable::atan2(glm::length(glm::cross(move.axis_from, move.axis_to)),
+                         glm::dot(move.axis_from, move.axis_to));
 }
 
 /// Along the great circle; only of a move that turns.
@@ -26,7 +27,7 @@ Vec3 turned_axis(const CutMove& move, double part) {
   const double angle = part * turned_rad(move);
   const Vec3 across =
       glm::normalize(move.axis_to - glm::dot(move.axis_from, move.axis_to) * move.axis_from);
-  return std::cos(angle) * move.axis_from + std::sin(angle) * across;
+  return portable::cos(angle) * move.axis_from + portable::sin(angle) * across;
 }
 
 std::uint32_t cut_id_of(std::uint64_t id) {
@@ -159,7 +160,7 @@ Vec3 arc_point(const CutMove& move, const ArcFrame& f, double s) {
   if (s >= 1) return move.to_mm;
   const double angle = s * move.arc->sweep_rad;
   return move.arc->center_mm +
-         (f.r0 + s * (f.r1 - f.r0)) * (std::cos(angle) * f.u + std::sin(angle) * f.v) +
+         (f.r0 + s * (f.r1 - f.r0)) * (portable::cos(angle) * f.u + portable::sin(angle) * f.v) +
          (f.rise0 + s * (f.rise1 - f.rise0)) * move.arc->axis;
 }
 
@@ -178,13 +179,13 @@ void add_level_arc(const ToolBody& body, const CutMove& move, const ArcFrame& f,
   sweep.body = &body;
   sweep.w = move.axis_from;
   sweep.origin_mm = arc.center_mm + f.rise0 * arc.axis;
-  sweep.u = std::cos(middle) * f.u + std::sin(middle) * f.v;
+  sweep.u = portable::cos(middle) * f.u + portable::sin(middle) * f.v;
   sweep.v = glm::cross(sweep.w, sweep.u);
   sweep.arc_radius = (f.r0 + f.r1) / 2;
   // A full circle has no ends: every direction is within it.
-  sweep.cos_half = half > kPi - 1e-12 ? -2 : std::cos(half);
-  sweep.end_u = sweep.arc_radius * std::cos(half);
-  sweep.end_v = sweep.arc_radius * std::sin(half);
+  sweep.cos_half = half > kPi - 1e-12 ? -2 : portable::cos(half);
+  sweep.end_u = sweep.arc_radius * portable::cos(half);
+  sweep.end_v = sweep.arc_radius * portable::sin(half);
   Box box;
   extend(box, sweep.origin_mm, sweep.w, body, reach_above(bounds, sweep.origin_mm, sweep.w, body));
   if (sweep.w == kUp) sweep.bottom_mm = sweep.origin_mm.z + body.low_mm;
@@ -193,7 +194,7 @@ void add_level_arc(const ToolBody& body, const CutMove& move, const ArcFrame& f,
 
 int chords_of(const CutMove& move, const ArcFrame& f, double tolerance) {
   const double radius = std::max({f.r0, f.r1, tolerance});
-  const double step = 2 * std::acos(std::max(0.0, 1 - tolerance / radius));
+  const double step = 2 * portable::acos(std::max(0.0, 1 - tolerance / radius));
   return std::max(1, static_cast<int>(std::ceil(std::abs(move.arc->sweep_rad) / step)));
 }
 

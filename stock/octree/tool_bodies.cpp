@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf::octree {
@@ -24,10 +25,10 @@ struct ChainLink {
 };
 
 double first_angle(const ToolElement& e) {
-  return e.arc ? std::atan2(e.n0z, e.n0r) : std::atan2(e.nz, e.nr);
+  return e.arc ? portable::atan2(e.n0z, e.n0r) : portable::atan2(e.nz, e.nr);
 }
 double last_angle(const ToolElement& e) {
-  return e.arc ? std::atan2(e.n1z, e.n1r) : std::atan2(e.nz, e.nr);
+  return e.arc ? portable::atan2(e.n1z, e.n1r) : portable::atan2(e.nz, e.nr);
 }
 
 ToolElement line_element(double nr, double nz, double offset) {
@@ -39,7 +40,7 @@ ToolElement line_element(double nr, double nz, double offset) {
 }
 
 ChainLink line_link(double r0, double z0, double r1, double z1) {
-  const double length = std::hypot(r1 - r0, z1 - z0);
+  const double length = portable::hypot(r1 - r0, z1 - z0);
   const double nr = (z1 - z0) / length, nz = -(r1 - r0) / length;
   return {line_element(nr, nz, nr * r0 + nz * z0), r0, z0, r1, z1};
 }
@@ -56,7 +57,7 @@ ChainLink arc_link(const ProfilePiece& p) {
     // Ends that are level or upright but for rounding are so exactly.
     if (std::abs(nr) < 1e-12) nr = 0;
     if (std::abs(nz) < 1e-12) nz = 0;
-    const double length = std::hypot(nr, nz);
+    const double length = portable::hypot(nr, nz);
     nr /= length;
     nz /= length;
   };
@@ -66,17 +67,17 @@ ChainLink arc_link(const ProfilePiece& p) {
 }
 
 void append_hollow_arc(const ProfilePiece& arc, std::vector<ChainLink>& out) {
-  const double a0 = std::atan2(arc.z0 - arc.center_z, arc.r0 - arc.center_r);
-  double a1 = std::atan2(arc.z1 - arc.center_z, arc.r1 - arc.center_r);
+  const double a0 = portable::atan2(arc.z0 - arc.center_z, arc.r0 - arc.center_r);
+  double a1 = portable::atan2(arc.z1 - arc.center_z, arc.r1 - arc.center_r);
   if (a1 - a0 > kPi) a1 -= 2 * kPi;
   if (a1 - a0 < -kPi) a1 += 2 * kPi;
-  const double step = 2 * std::acos(std::max(0.0, 1 - kHollowChord_mm / arc.radius));
+  const double step = 2 * portable::acos(std::max(0.0, 1 - kHollowChord_mm / arc.radius));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(a1 - a0) / step)));
   double r = arc.r0, z = arc.z0;
   for (int i = 1; i <= n; ++i) {
     const double a = a0 + (a1 - a0) * i / n;
-    const double r_next = i == n ? arc.r1 : arc.center_r + arc.radius * std::cos(a);
-    const double z_next = i == n ? arc.z1 : arc.center_z + arc.radius * std::sin(a);
+    const double r_next = i == n ? arc.r1 : arc.center_r + arc.radius * portable::cos(a);
+    const double z_next = i == n ? arc.z1 : arc.center_z + arc.radius * portable::sin(a);
     if (r_next - r > kVertical_mm) out.push_back(line_link(r, z, r_next, z_next));
     r = r_next;
     z = z_next;

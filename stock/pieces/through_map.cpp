@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/portable_math.h"
 #include "stock/zmap/part_pieces.h"
 
 namespace kerf {
@@ -221,7 +222,8 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
       double steps = std::max(1.0, std::ceil(part_mm / step_mm));
       if (piece.turns) {
         const double off_mm = cell * (radius(t0) == radius(t1) ? kAskedChord : kChord);
-        const double chord = 2 * std::acos(std::max(0.0, 1 - off_mm / std::max(piece.arm, off_mm)));
+        const double chord =
+            2 * portable::acos(std::max(0.0, 1 - off_mm / std::max(piece.arm, off_mm)));
         steps = std::max(steps, std::ceil(std::abs(piece.sweep_rad) * (t1 - t0) / chord));
       }
       for (int s = 0; s < static_cast<int>(steps); ++s) {
@@ -237,8 +239,8 @@ void ThroughMap::cut(const Cutter& cutter, const CutMove& move, std::vector<Thro
         arc_ = piece.turns && slope_ == nullptr ? &piece : nullptr;
         if (arc_) {
           const double middle = piece.begin_rad + (a + b) / 2 * piece.sweep_rad;
-          arc_middle_ = {std::cos(middle), std::sin(middle)};
-          arc_cosine_ = std::cos(std::min(kPi, (b - a) / 2 * std::abs(piece.sweep_rad)));
+          arc_middle_ = {portable::cos(middle), portable::sin(middle)};
+          arc_cosine_ = portable::cos(std::min(kPi, (b - a) / 2 * std::abs(piece.sweep_rad)));
         }
         radius_mm_ = std::max(wide_a, wide_b);
         sweep(Vec2(begin), Vec2(tip), radius_mm_ + (arc_ ? kAskedChord * cell : 0));

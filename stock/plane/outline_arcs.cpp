@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "stock/plane/outline_curves.h"
 #include "stock/plane/polygon.h"
 
@@ -31,7 +32,7 @@ double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 /// Counter-clockwise from a to b: -pi .. pi.
 double angle_between(const Vec2& a, const Vec2& b) {
-  return std::atan2(cross(a, b), glm::dot(a, b));
+  return portable::atan2(cross(a, b), glm::dot(a, b));
 }
 
 /// The circle nearest to points that come one by one, in the sense of I. Kasa, "A circle fitting
@@ -131,7 +132,8 @@ class ArcFinder {
   /// The way between two corners is not longer than a chord of the circle.
   bool is_short(const Run& run, const Vec2& from, const Vec2& to) const {
     const double step = std::abs(run.step_rad(from, to));
-    return step <= kMaxStep_rad && run.corners.radius_mm * (1 - std::cos(step / 2)) <= sagitta_;
+    return step <= kMaxStep_rad &&
+           run.corners.radius_mm * (1 - portable::cos(step / 2)) <= sagitta_;
   }
 
   /// The shortest chain from `start` on that tells its circle.
@@ -225,7 +227,7 @@ class ArcFinder {
       const double step = run.step_rad(at(i), at(i + 1));
       if (!is_on(run, at(i)) || !is_on(run, at(i + 1)) || step <= 0) continue;
       angles += step;
-      sines += std::sin(step);
+      sines += portable::sin(step);
       run.max_step_rad = std::max(run.max_step_rad, step);
     }
     run.shrink = std::sqrt(sines / angles);
@@ -235,7 +237,7 @@ class ArcFinder {
   bool is_end(const Run& run, long i, const Vec2& inner) const {
     const double slack = on_circle_ / run.corners.radius_mm;
     const double step = i < run.first ? run.step_rad(at(i), inner) : run.step_rad(inner, at(i));
-    const double low = run.corners.radius_mm * std::cos(run.max_step_rad / 2) - on_circle_;
+    const double low = run.corners.radius_mm * portable::cos(run.max_step_rad / 2) - on_circle_;
     const double distance = run.distance(at(i));
     return step > 0 && step <= run.max_step_rad + slack && distance >= low &&
            distance <= run.corners.radius_mm + on_circle_;
@@ -336,13 +338,14 @@ class ArcFinder {
     double sweep = run.step_rad(from, to);
     if (sweep <= 0) sweep += 2 * kPi;
     const bool halves = sweep > kHalfTurn_rad;
-    const double bulge = run.sense * std::tan((halves ? sweep / 2 : sweep) / 4);
+    const double bulge = run.sense * portable::tan((halves ? sweep / 2 : sweep) / 4);
     corners.push_back({from, bulge});
     if (!halves) return;
     const Vec2 arm = from - run.corners.center_mm;
-    const double angle = std::atan2(arm.y, arm.x) + run.sense * sweep / 2;
+    const double angle = portable::atan2(arm.y, arm.x) + run.sense * sweep / 2;
     corners.push_back(
-        {run.corners.center_mm + run.radius_mm() * Vec2(std::cos(angle), std::sin(angle)), bulge});
+        {run.corners.center_mm + run.radius_mm() * Vec2(portable::cos(angle), portable::sin(angle)),
+         bulge});
   }
 
   const std::vector<Vec2>& ring_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf::plane {
 namespace {
 
@@ -19,16 +21,17 @@ int chords_for(double wanted) {
 
 void append_arc(const Vec2& center, double radius_mm, double from_rad, double sweep_rad,
                 double tolerance_mm, std::vector<Vec2>& points, double ratio, double turned_rad) {
-  const double step = 2 * std::acos(std::max(1 - tolerance_mm / std::abs(radius_mm), kLeastCosine));
+  const double step =
+      2 * portable::acos(std::max(1 - tolerance_mm / std::abs(radius_mm), kLeastCosine));
   const int chords = chords_for(std::abs(sweep_rad) / std::max(step, 1e-9));
   const double chord_rad = std::abs(sweep_rad) / chords;
-  const double corner_mm = radius_mm * std::sqrt(chord_rad / std::sin(chord_rad));
+  const double corner_mm = radius_mm * std::sqrt(chord_rad / portable::sin(chord_rad));
   const bool is_full = std::abs(sweep_rad) > 2 * kPi * (1 - 1e-12);
-  const double cosine = std::cos(turned_rad), sine = std::sin(turned_rad);
+  const double cosine = portable::cos(turned_rad), sine = portable::sin(turned_rad);
   for (int i = 1; i <= chords; ++i) {
     const double angle = from_rad + sweep_rad * i / chords;
     const double r = i < chords || is_full ? corner_mm : radius_mm;
-    const double x = r * std::cos(angle), y = ratio * r * std::sin(angle);
+    const double x = r * portable::cos(angle), y = ratio * r * portable::sin(angle);
     points.push_back(center + Vec2(cosine * x - sine * y, sine * x + cosine * y));
   }
 }
@@ -40,7 +43,7 @@ void append_bulge(const Vec2& to, double bulge, double tolerance_mm, std::vector
     const Vec2 left(-way.y, way.x);
     const Vec2 center = (from + to) / 2.0 + left * ((1 - bulge * bulge) / (4 * bulge));
     const Vec2 arm = from - center;
-    append_arc(center, glm::length(arm), std::atan2(arm.y, arm.x), 4 * std::atan(bulge),
+    append_arc(center, glm::length(arm), portable::atan2(arm.y, arm.x), 4 * portable::atan(bulge),
                tolerance_mm, points);
     points.pop_back();
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "base/units.h"
 #include "stock/cutter/scan.h"
@@ -176,7 +177,7 @@ class DxfReader {
     if (!error_.empty()) return;
     while (sweep <= 0) sweep += 2 * kPi;
     std::vector<Vec2> points;
-    if (!circle) points.push_back(center + radius * Vec2(std::cos(from), std::sin(from)));
+    if (!circle) points.push_back(center + radius * Vec2(portable::cos(from), portable::sin(from)));
     plane::append_arc(center, radius, from, sweep, tolerance_, points);
     if (circle) return add_ring(std::move(points), entity[0].line);
     pieces_.push_back({std::move(points), entity[0].line});
@@ -242,7 +243,7 @@ class DxfReader {
   }
 
   static bool near(const Vec2& a, const Vec2& b) {
-    return std::hypot(a.x - b.x, a.y - b.y) <= kJoin_mm;
+    return portable::hypot(a.x - b.x, a.y - b.y) <= kJoin_mm;
   }
 
   bool is_on_axis(const Vec2& p) const { return has_axis_ && std::abs(p.y) <= kJoin_mm; }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/plane/outline_curves.h"
@@ -189,7 +190,7 @@ class PathReader {
     const Vec2 to = point(origin);
     if (!error_.empty() || to == here) return;
     if (rx == 0 || ry == 0) return ring_.push_back(to);
-    const double c = std::cos(turned), s = std::sin(turned);
+    const double c = portable::cos(turned), s = portable::sin(turned);
     const Vec2 half = (here - to) / 2.0;
     const Vec2 p(c * half.x + s * half.y, -s * half.x + c * half.y);
     const double reach = p.x * p.x / (rx * rx) + p.y * p.y / (ry * ry);
@@ -201,8 +202,8 @@ class PathReader {
     const double factor = (*large == *ccw ? -1 : 1) * std::sqrt(square);
     const Vec2 mid(factor * rx * p.y / ry, -factor * ry * p.x / rx);
     const Vec2 center = (here + to) / 2.0 + Vec2(c * mid.x - s * mid.y, s * mid.x + c * mid.y);
-    const double from = std::atan2((p.y - mid.y) / ry, (p.x - mid.x) / rx);
-    const double until = std::atan2((-p.y - mid.y) / ry, (-p.x - mid.x) / rx);
+    const double from = portable::atan2((p.y - mid.y) / ry, (p.x - mid.x) / rx);
+    const double until = portable::atan2((-p.y - mid.y) / ry, (-p.x - mid.x) / rx);
     double sweep = until - from;
     if (*ccw == 1 && sweep < 0) sweep += 2 * kPi;
     if (*ccw == 0 && sweep > 0) sweep -= 2 * kPi;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf::sheet {
 namespace {
 
@@ -23,7 +25,7 @@ constexpr double kPlainTolerance = 0.2;
 /// Ends of an arc that are so far apart, seen from its centre, do not meet.
 constexpr double kPlainGap_rad = 0.1;
 
-Vec2 direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+Vec2 direction(double angle) { return {portable::cos(angle), portable::sin(angle)}; }
 
 class Builder {
  public:
@@ -37,8 +39,8 @@ class Builder {
 
   void capsule(const Vec2& from, const Vec2& to) {
     const Vec2 way = to - from;
-    if (std::hypot(way.x, way.y) < kNoWay_mm) return disc(from);
-    const double heading = std::atan2(way.y, way.x);
+    if (portable::hypot(way.x, way.y) < kNoWay_mm) return disc(from);
+    const double heading = portable::atan2(way.y, way.x);
     begin();
     arc(to, radius_, heading - kPi / 2, heading + kPi / 2);
     arc(from, radius_, heading + kPi / 2, heading + 3 * kPi / 2);
@@ -66,17 +68,17 @@ class Builder {
       arc(last, radius_, a1, a1 + kPi);
       arc(center, arc_radius - radius_, a1, a0);
       arc(first, radius_, a0 - kPi, a0);
-      const double ends = 2 * std::asin(radius_ / arc_radius);
+      const double ends = 2 * portable::asin(radius_ / arc_radius);
       is_plain_ = sweep + ends < 2 * kPi - kPlainGap_rad && resolves(radius_) &&
                   resolves(arc_radius - radius_);
     } else {
       // Where the circles of both ends meet: on the bisector, opposite to the arc's middle.
       const double half = sweep / 2;
-      const double root = radius_ * radius_ - std::pow(arc_radius * std::sin(half), 2);
-      const double reach = std::sqrt(std::max(root, 0.0)) - arc_radius * std::cos(half);
+      const double root = radius_ * radius_ - std::pow(arc_radius * portable::sin(half), 2);
+      const double reach = std::sqrt(std::max(root, 0.0)) - arc_radius * portable::cos(half);
       const Vec2 meeting = center - reach * direction(a0 + half);
       const auto angle_from = [&](const Vec2& middle) {
-        return std::atan2(meeting.y - middle.y, meeting.x - middle.x);
+        return portable::atan2(meeting.y - middle.y, meeting.x - middle.x);
       };
       arc(last, radius_, a1, a1 + turn_to(a1, angle_from(last)));
       arc(first, radius_, a0 - turn_to(angle_from(first), a0), a0);
@@ -168,8 +170,8 @@ Vec2 point_of_arc(const CutMove& move, double share) {
   const double r1 = glm::length(radial(move.to_mm));
   const double angle = share * arc.sweep_rad;
   const Vec3 side = glm::cross(arc.axis, start);
-  const Vec3 arm =
-      (std::cos(angle) * start + std::sin(angle) * side) * ((r0 + share * (r1 - r0)) / r0);
+  const Vec3 arm = (portable::cos(angle) * start + portable::sin(angle) * side) *
+                   ((r0 + share * (r1 - r0)) / r0);
   const double h0 = glm::dot(move.from_mm - arc.center_mm, arc.axis);
   const double h1 = glm::dot(move.to_mm - arc.center_mm, arc.axis);
   return Vec2(arc.center_mm + arm + (h0 + share * (h1 - h0)) * arc.axis);
@@ -206,7 +208,7 @@ const std::vector<Vec2>& CircleTables::points(int count) {
 
 CirclePolygon CirclePolygon::within(double radius_mm, double tolerance_mm) {
   const double sagitta = 1.5 * tolerance_mm;  // two thirds of it outward
-  const double step = sagitta < radius_mm ? 2 * std::acos(1 - sagitta / radius_mm) : kPi / 2;
+  const double step = sagitta < radius_mm ? 2 * portable::acos(1 - sagitta / radius_mm) : kPi / 2;
   const auto quarter = static_cast<std::int64_t>(std::max(std::ceil(kPi / 2 / step), 2.0));
   // Few different counts, an eighth apart at most: arcs of like radii share a table.
   std::int64_t grain = 1;
@@ -214,7 +216,7 @@ CirclePolygon CirclePolygon::within(double radius_mm, double tolerance_mm) {
   CirclePolygon polygon;
   polygon.count = static_cast<int>(4 * ((quarter + grain - 1) / grain * grain));
   const double angle = 2 * kPi / polygon.count;
-  polygon.corner_mm = radius_mm * std::sqrt(angle / std::sin(angle));
+  polygon.corner_mm = radius_mm * std::sqrt(angle / portable::sin(angle));
   return polygon;
 }
 
@@ -236,7 +238,7 @@ Kerf kerf_of_move(const CutMove& move, double radius_mm, double tolerance_mm,
     chain_of_chords(move, tolerance_mm, builder);
     return builder.take();
   }
-  const double a0 = std::atan2(from.y - center.y, from.x - center.x);
+  const double a0 = portable::atan2(from.y - center.y, from.x - center.x);
   const double sweep = arc.axis.z > 0 ? arc.sweep_rad : -arc.sweep_rad;
   builder.sector(center, (r0 + r1) / 2, std::min(a0, a0 + sweep), std::max(a0, a0 + sweep));
   return builder.take();
@@ -248,7 +250,7 @@ std::vector<Vec2> chords_of_move(const CutMove& move, double tolerance_mm) {
   const double r1 = glm::length(move.to_mm - move.arc->center_mm);
   const double radius = std::max({r0, r1, tolerance_mm});
   // Half of it: a spiral bends more sharply than a circle of its largest radius.
-  const double step = 2 * std::acos(std::max(1 - tolerance_mm / 2 / radius, 0.5));
+  const double step = 2 * portable::acos(std::max(1 - tolerance_mm / 2 / radius, 0.5));
   const double wanted = std::ceil(std::abs(move.arc->sweep_rad) / step);
   const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kMaxChords)));
   std::vector<Vec2> way;

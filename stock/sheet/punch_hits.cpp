@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -19,7 +21,7 @@ Vec2 direction_of(double turn_rad) {
   const double nearest = std::round(quarters);
   constexpr double kSameTurn = 1e-12;
   if (std::abs(quarters - nearest) > kSameTurn * std::max(1.0, std::abs(quarters))) {
-    return {std::cos(turn_rad), std::sin(turn_rad)};
+    return {portable::cos(turn_rad), portable::sin(turn_rad)};
   }
   const double quarter = nearest - 4 * std::floor(nearest / 4);
   return quarter == 0   ? Vec2(1, 0)

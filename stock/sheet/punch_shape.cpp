@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/suggest.h"
 #include "base/translate.h"
 #include "stock/cutter/scan.h"
@@ -36,7 +37,7 @@ PlaneOutline rectangle(double a, double b) {
   return rectangle_outline({-a / 2, -b / 2}, {a / 2, b / 2});
 }
 
-Vec2 direction(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+Vec2 direction(double angle_rad) { return {portable::cos(angle_rad), portable::sin(angle_rad)}; }
 
 /// Both ends lie on the circle, where straight edges go on; the corners between them so far outside
 /// that the polygon has the area of the half disc: with n triangles of angle a,
@@ -45,7 +46,7 @@ void append_half_circle(const Vec2& center, double r, double from_rad, double to
                         std::vector<Vec2>& ring) {
   const int n = sheet::CirclePolygon::within(r, tolerance_mm).count / 2;
   const double a = kPi / n;
-  const double c = r * (std::sqrt(1 + (n - 2) * kPi / std::sin(a)) - 1) / (n - 2);
+  const double c = r * (std::sqrt(1 + (n - 2) * kPi / portable::sin(a)) - 1) / (n - 2);
   for (int i = 0; i <= n; ++i) {
     ring.push_back(center + (i == 0 || i == n ? r : c) * direction(from_rad + i * a));
   }
@@ -109,7 +110,7 @@ Result<PlaneOutline> parse_polygon(const Fields& fields) {
   std::vector<Vec2>& ring = shape.rings.emplace_back();
   for (int i = 0; i < static_cast<int>(*n); ++i) {
     const double angle = 2 * kPi * i / *n;
-    ring.push_back(*d / 2 * Vec2(std::cos(angle), std::sin(angle)));
+    ring.push_back(*d / 2 * Vec2(portable::cos(angle), portable::sin(angle)));
   }
   return shape;
 }

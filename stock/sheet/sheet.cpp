@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/move_reach.h"
@@ -190,7 +191,7 @@ CutReport Sheet::punch(const PlaneOutline& shape, const Vec2& position_mm, doubl
                        std::uint64_t id) {
   const double sum = std::abs(position_mm.x) + std::abs(position_mm.y) + std::abs(angle_rad);
   if (!(sum < kMaxPunchCoordinate_mm)) return {id, 0, 0};
-  const double cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
+  const double cosine = portable::cos(angle_rad), sine = portable::sin(angle_rad);
   sheet::Kerf kerf;
   std::vector<std::vector<Vec2>> placed = shape.rings;
   for (std::vector<Vec2>& ring : placed) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace kerf::sheet {
 namespace {
 
@@ -96,14 +98,14 @@ FittedRing fit(const Ring& ring, const Rect& rect, const std::array<Neighbour, 4
 std::size_t way_out(const std::vector<DirectedEdge>& edges, const std::vector<char>& used,
                     std::size_t first, const Point& from, const Point& at) {
   const double back =
-      std::atan2(static_cast<double>(from.Y - at.Y), static_cast<double>(from.X - at.X));
+      portable::atan2(static_cast<double>(from.Y - at.Y), static_cast<double>(from.X - at.X));
   std::size_t best = edges.size();
   double best_turn = 0;
   for (std::size_t i = first; i < edges.size() && edges[i].from == at; ++i) {
     if (used[i]) continue;
     const Point& to = edges[i].to;
     const double out =
-        std::atan2(static_cast<double>(to.Y - at.Y), static_cast<double>(to.X - at.X));
+        portable::atan2(static_cast<double>(to.Y - at.Y), static_cast<double>(to.X - at.X));
     double clockwise = back - out;
     while (clockwise <= 0) clockwise += 2 * kPi;
     if (best == edges.size() || clockwise < best_turn) {
@@ -141,7 +143,8 @@ Rings chain(std::vector<DirectedEdge> edges) {
 }
 
 bool is_straight(const Point& a, const Point& b, const Point& c) {
-  const double length = std::hypot(static_cast<double>(c.X - a.X), static_cast<double>(c.Y - a.Y));
+  const double length =
+      portable::hypot(static_cast<double>(c.X - a.X), static_cast<double>(c.Y - a.Y));
   const double ahead = static_cast<double>(b.X - a.X) * static_cast<double>(c.X - b.X) +
                        static_cast<double>(b.Y - a.Y) * static_cast<double>(c.Y - b.Y);
   return ahead > 0 && std::abs(static_cast<double>(turn(a, b, c))) <= kStraight_units * length;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "base/portable_math.h"
 #include "stock/sheet/sheet_border.h"
 #include "stock/sheet/triangulate.h"
 
@@ -50,7 +51,7 @@ struct PointHash {
 /// Out of the material, which lies to the left of the edge.
 glm::vec3 outward(const Point& a, const Point& b) {
   const double x = static_cast<double>(b.X - a.X), y = static_cast<double>(b.Y - a.Y);
-  const double length = std::hypot(x, y);
+  const double length = portable::hypot(x, y);
   return {static_cast<float>(y / length), static_cast<float>(-x / length), 0.0f};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "stock/turning/bar_flats.h"
 
 namespace kerf::turning {
@@ -17,7 +18,7 @@ inline std::vector<Vec2> directions(int segments) {
   std::vector<Vec2> all;
   for (int i = 0; i < segments; ++i) {
     const double angle = 2 * kPi * i / segments;
-    all.emplace_back(std::cos(angle), std::sin(angle));
+    all.emplace_back(portable::cos(angle), portable::sin(angle));
   }
   all.push_back(all.front());
   return all;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 
 double BarFlats::reach_mm(double angle_rad) const {
   const double step = 2 * kPi / count;
-  return inner_radius_mm / std::cos(angle_rad - step * std::round(angle_rad / step));
+  return inner_radius_mm / portable::cos(angle_rad - step * std::round(angle_rad / step));
 }
 
 namespace turning {
@@ -20,7 +22,7 @@ constexpr double kNarrow_mm = 1e-3;
 double segment_mm2(double r, const BarFlats& flats) {
   const double a = flats.inner_radius_mm;
   if (r <= a) return 0;
-  return flats.count * (r * r * std::acos(a / r) - a * std::sqrt(r * r - a * a));
+  return flats.count * (r * r * portable::acos(a / r) - a * std::sqrt(r * r - a * a));
 }
 
 /// Its antiderivative over the radius.
@@ -28,7 +30,7 @@ double segment_sum(double r, const BarFlats& flats) {
   const double a = flats.inner_radius_mm;
   if (r <= a) return 0;
   const double s = std::sqrt(r * r - a * a);
-  return flats.count * (r * r * r / 3 * std::acos(a / r) - 2 * a * r * s / 3 +
+  return flats.count * (r * r * r / 3 * portable::acos(a / r) - 2 * a * r * s / 3 +
                         a * a * a / 3 * std::log((r + s) / a));
 }
 

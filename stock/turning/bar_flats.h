@@ -13,6 +13,7 @@
 #include <span>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "stock/turning/contour.h"
 
 namespace kerf {
@@ -21,7 +22,7 @@ namespace kerf {
 struct BarFlats {
   int count = 0;
   double inner_radius_mm = 0;  ///< half the width across flats
-  double outer_radius_mm() const { return inner_radius_mm / std::cos(kPi / count); }
+  double outer_radius_mm() const { return inner_radius_mm / portable::cos(kPi / count); }
   /// How far the bar reaches at this angle about the axis.
   double reach_mm(double angle_rad) const;
   bool operator==(const BarFlats&) const = default;

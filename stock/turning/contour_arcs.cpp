@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace kerf::turning {
 namespace {
 
@@ -30,7 +32,7 @@ struct ArcCircle {
   double off(const Vec2& p) const { return glm::distance(p, center) - radius; }
   double step_rad(const Vec2& from, const Vec2& to) const {
     const Vec2 a = from - center, b = to - center;
-    return std::atan2(cross_of(a, b), glm::dot(a, b));
+    return portable::atan2(cross_of(a, b), glm::dot(a, b));
   }
 };
 
@@ -151,7 +153,7 @@ class ContourArcs {
     }
     if (std::abs(circle->off(points_[last])) > kArcBand_mm || turned > 2 * kPi + 1e-6)
       return std::nullopt;
-    if (turned < kPi && circle->radius * (1 - std::cos(turned / 2)) < kLeastBend_mm)
+    if (turned < kPi && circle->radius * (1 - portable::cos(turned / 2)) < kLeastBend_mm)
       return std::nullopt;
     return circle;
   }

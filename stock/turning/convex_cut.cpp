@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/portable_math.h"
+
 namespace kerf::turning {
 namespace {
 
@@ -393,7 +395,7 @@ void ConvexCut::append_marked(const Point& from, const Point& to, std::uint32_t 
   };
   if (from == to) return;
   const Vec2 way = vector(from, to);
-  const double length = std::hypot(way.x, way.y);
+  const double length = portable::hypot(way.x, way.y);
   kept_.clear();
   for (const MarkedEdge& edge : edges_before_) {
     constexpr auto kNear = static_cast<Unit>(kSame);
@@ -401,7 +403,7 @@ void ConvexCut::append_marked(const Point& from, const Point& to, std::uint32_t 
     near = {near.min_x - kNear, near.min_y - kNear, near.max_x + kNear, near.max_y + kNear};
     if (!near.meets(box_of(from, to))) continue;
     const Vec2 p = vector(from, edge.from), other = vector(edge.from, edge.to);
-    const double other_length = std::hypot(other.x, other.y);
+    const double other_length = portable::hypot(other.x, other.y);
     const double begin = (p.x * way.x + p.y * way.y) / length;
     const double end = begin + (other.x * way.x + other.y * way.y) / length;
     KeptPiece piece{std::max(begin, 0.0), std::min(end, length), edge.mark};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace kerf::turning {
 namespace {
 
@@ -29,7 +31,7 @@ bool is_trace(std::span<const Point> ring) {
   double around = 0;
   Point last = ring.back();
   for (const Point& p : ring) {
-    around += std::hypot(static_cast<double>(p.X - last.X), static_cast<double>(p.Y - last.Y));
+    around += portable::hypot(static_cast<double>(p.X - last.X), static_cast<double>(p.Y - last.Y));
     last = p;
   }
   return static_cast<double>(twice_area(ring)) < kTraces * around;
@@ -142,7 +144,7 @@ double Sections::greatest_mean(double window) const {
 Engagement EngagementGauge::measure(const ConvexCut& cut, const GridPart::Lead& lead,
                                     const Point& way) {
   Engagement engagement;
-  const double length = std::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
+  const double length = portable::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
   if (length == 0) {
     for (std::size_t i = 0; i < cut.removed_count(); ++i) {
       constexpr double kLeast = 2 * ConvexCut::kFilm * ConvexCut::kFilm;
@@ -176,7 +178,7 @@ Engagement EngagementGauge::measure(const ConvexCut& cut, const GridPart::Lead& 
       const double slope =
           (lead.along[k + 1] - lead.along[k]) / (lead.across[k + 1] - lead.across[k]);
       engagement.edge_across_mm += met / kUnitsPerMm;
-      engagement.edge_mm += met / kUnitsPerMm * std::hypot(1.0, slope);
+      engagement.edge_mm += met / kUnitsPerMm * portable::hypot(1.0, slope);
     }
   }
   return engagement;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf::turning {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double kMaxStep_rad = kPi / 8;
 constexpr double kArcEnd = 36;
 
 double turn_of(const Vec2& from, const Vec2& to) {
-  const double angle = std::atan2(from.x * to.y - from.y * to.x, glm::dot(from, to));
+  const double angle = portable::atan2(from.x * to.y - from.y * to.x, glm::dot(from, to));
   return angle > 0 ? angle : angle + 2 * kPi;
 }
 
@@ -36,8 +38,8 @@ ArcSteps arc_steps(double radius_mm, double sweep_rad, double bound_mm) {
   steps.count = std::max(1, static_cast<int>(std::ceil(sweep_rad / step)));
   steps.step_rad = sweep_rad / steps.count;
   // Twice the area over radius^2: two triangles at the ends, count - 1 between.
-  const double ends = std::sin(steps.step_rad / 2);
-  const double between = (steps.count - 1) * std::sin(steps.step_rad);
+  const double ends = portable::sin(steps.step_rad / 2);
+  const double between = (steps.count - 1) * portable::sin(steps.step_rad);
   steps.outward = steps.count == 1
                       ? sweep_rad / (2 * ends)
                       : (std::sqrt(ends * ends + between * sweep_rad) - ends) / between;
@@ -68,14 +70,14 @@ void GridPart::add_arc(const Vec2& from_mm, const InsertEdge& edge) {
   const double radius_mm = glm::length(start);
   arc.center = *edge.center_mm * kUnitsPerMm;
   arc.radius = radius_mm * kUnitsPerMm;
-  arc.start_rad = std::atan2(start.y, start.x);
+  arc.start_rad = portable::atan2(start.y, start.x);
   arc.sweep_rad = turn_of(start, end);
   arc.steps = arc_steps(radius_mm, arc.sweep_rad, kArcBound_mm);
   arc.first = corners_.size();
   for (int i = 0; i < arc.steps.count; ++i) {
     const double angle = arc.start_rad + (i + 0.5) * arc.steps.step_rad;
-    const Vec2 p =
-        arc.center + arc.steps.outward * arc.radius * Vec2(std::cos(angle), std::sin(angle));
+    const Vec2 p = arc.center + arc.steps.outward * arc.radius *
+                                    Vec2(portable::cos(angle), portable::sin(angle));
     corners_.push_back({std::llround(p.x), std::llround(p.y)});
     sides_.push_back(edge.side);
   }
@@ -85,7 +87,7 @@ void GridPart::add_arc(const Vec2& from_mm, const InsertEdge& edge) {
 /// Where a line with this normal touches an arc, its point takes the place of the corner that would
 /// stick out beyond it.
 void GridPart::touch(const Vec2& normal, std::vector<Point>& corners) const {
-  const double angle = std::atan2(normal.y, normal.x);
+  const double angle = portable::atan2(normal.y, normal.x);
   for (const Arc& arc : arcs_) {
     double along = std::fmod(angle - arc.start_rad, 2 * kPi);
     if (along < 0) along += 2 * kPi;
@@ -102,7 +104,7 @@ void GridPart::sweep(const Point& from, const Point& to, Scratch& scratch, Conve
   std::vector<Point>&touched = scratch.touched, &corners = scratch.swept;
   const std::size_t n = corners_.size();
   const Point way{to.X - from.X, to.Y - from.Y};
-  const double length = std::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
+  const double length = portable::hypot(static_cast<double>(way.X), static_cast<double>(way.Y));
   lead.across.clear();
   lead.along.clear();
   lead.sides.clear();

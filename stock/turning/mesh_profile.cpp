@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -21,7 +22,7 @@ constexpr double kFirstAngle = 0.123456789;
 /// Triangles whose corners are no farther apart along Z are an end or a shoulder.
 constexpr double kLevel_mm = 1e-3;
 
-double radius_of(const Vec3& p) { return std::hypot(p.x, p.y); }
+double radius_of(const Vec3& p) { return portable::hypot(p.x, p.y); }
 
 /// The first place of an edge that is farther from the round surface than kFacet_mm.
 std::optional<Vec3> misfit_of(const MeshBody& body) {
@@ -43,7 +44,7 @@ std::optional<Vec3> misfit_of(const MeshBody& body) {
 class Section {
  public:
   Section(const MeshBody& body, double angle)
-      : body_(body), along_(std::cos(angle), std::sin(angle)) {}
+      : body_(body), along_(portable::cos(angle), portable::sin(angle)) {}
 
   /// Empty: it is not closed.
   std::vector<std::vector<Vec2>> rings() {

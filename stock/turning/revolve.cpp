@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "stock/turning/around.h"
 
 namespace kerf::turning {
@@ -59,7 +60,7 @@ void keep_corners(std::span<const Vec2> chain, double tolerance_mm, std::size_t 
 
 int segments_for(double radius_mm, double tolerance_mm) {
   if (!(radius_mm > tolerance_mm)) return kFewestSegments;
-  const double half = std::acos(1 - tolerance_mm / radius_mm);
+  const double half = portable::acos(1 - tolerance_mm / radius_mm);
   return std::max(kFewestSegments, static_cast<int>(std::ceil(kPi / half)));
 }
 

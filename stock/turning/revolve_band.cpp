@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "stock/turning/around.h"
 #include "stock/turning/revolve.h"
 
@@ -92,7 +93,7 @@ Vec2 outward(const Vec2& a, const Vec2& b) {
 
 /// How far the middle of a side is from its circle that takes so many of the kPatchSegments.
 double off_circle_mm(double radius_mm, std::size_t step) {
-  return radius_mm * (1 - std::cos(kPi * static_cast<double>(step) / kPatchSegments));
+  return radius_mm * (1 - portable::cos(kPi * static_cast<double>(step) / kPatchSegments));
 }
 
 /// As many as keep within twice the tolerance.

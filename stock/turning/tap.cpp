@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
 constexpr double kTapDepth = 0.61343, kTapRoot = 0.125;  // pitches
-const double kTapSlope = std::tan(kPi / 6);
+const double kTapSlope = portable::tan(kPi / 6);
 
 }  // namespace
 

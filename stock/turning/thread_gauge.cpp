@@ -6,6 +6,8 @@
 #include <iterator>
 #include <optional>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -187,7 +189,7 @@ class Window {
       const std::optional<double> z = crossing(e, r);
       if (!z || !(*z > low_ && *z <= high_)) continue;
       ++count;
-      sum += std::atan2(std::abs(e.way.x), std::abs(e.way.y));
+      sum += portable::atan2(std::abs(e.way.x), std::abs(e.way.y));
     }
     ridges = count / 2;
     angle_rad = count > 0 ? 2 * sum / count : 0;

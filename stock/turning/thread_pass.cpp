@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/mesh_patch.h"
+#include "base/portable_math.h"
 
 namespace kerf::turning {
 namespace {
@@ -129,7 +130,7 @@ std::optional<ThreadPass> ThreadPass::restored(ConvexChain corners, const Vec2& 
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
     if (!(glm::length(a) <= 2 * kMaxInsertReach_mm)) return std::nullopt;
-    const double turn = std::atan2(cross_of(b - a, c - b), glm::dot(b - a, c - b));
+    const double turn = portable::atan2(cross_of(b - a, c - b), glm::dot(b - a, c - b));
     // Where outlines are clipped, corners may come to lie on a line, but for rounding.
     if (!(turn > -1e-6 && glm::distance(a, b) > 0)) return std::nullopt;
     around += turn;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "stock/turning/thread_pass.h"
 
 namespace kerf {
@@ -59,11 +60,12 @@ void append_way(const TurnMove& move, double reach_mm, std::vector<WayChord>& ch
     const double r0 = glm::length(from), r1 = glm::length(to), sweep = move.arc->sweep_rad;
     const std::optional<ArcSteps> steps = way_steps(std::max(r0, r1), sweep);
     if (!steps) return;
-    const double start = std::atan2(from.y, from.x);
+    const double start = portable::atan2(from.y, from.x);
     for (int i = 0; i < steps->count; ++i) {
       const double t = (i + 0.5) / steps->count;
       const double angle = start + t * sweep, r = (r0 + t * (r1 - r0)) * steps->outward;
-      const WayPoint next{move.arc->center_mm + r * Vec2(std::cos(angle), std::sin(angle)), t};
+      const WayPoint next{
+          move.arc->center_mm + r * Vec2(portable::cos(angle), portable::sin(angle)), t};
       append(at, next);
       at = next;
     }

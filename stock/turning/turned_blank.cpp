@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "stock/plane/outline_file.h"
@@ -38,7 +39,7 @@ std::string fault_of(const BlankBody& body) {
   }
   if (body.axis != 'z')
     return trf("it lies along {}; on a lathe it turns about Z", to_upper(body.axis));
-  if (std::hypot(body.center_mm.x, body.center_mm.y) > kOnAxis_mm) {
+  if (portable::hypot(body.center_mm.x, body.center_mm.y) > kOnAxis_mm) {
     return trf("its axis is at X{} Y{}; on a lathe it turns about X0 Y0",
                number_of(body.center_mm.x), number_of(body.center_mm.y));
   }
@@ -47,7 +48,7 @@ std::string fault_of(const BlankBody& body) {
 
 double outer_radius_mm(const BlankBody& body) {
   const double half = body.diameter_mm / 2;
-  return body.kind == BlankBody::Kind::kBar ? half / std::cos(kPi / body.flats) : half;
+  return body.kind == BlankBody::Kind::kBar ? half / portable::cos(kPi / body.flats) : half;
 }
 
 std::vector<Vec2> ring_of(const BlankBody& body) {
@@ -114,7 +115,7 @@ std::optional<Vec2> difference_of(const Rings& a, const Rings& b) {
     double around = 0, area2 = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vec2 p = turning::to_mm(ring[i]), q = turning::to_mm(ring[(i + 1) % ring.size()]);
-      around += std::hypot(q.x - p.x, q.y - p.y);
+      around += portable::hypot(q.x - p.x, q.y - p.y);
       area2 += p.x * q.y - q.x * p.y;
     }
     if (std::abs(area2) > kHalves_mm * around) return turning::to_mm(ring.front());

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/plane/outline_drawing.h"
 #include "stock/turning/contour_arcs.h"
 
@@ -32,13 +33,13 @@ plane::Curve drawn_curve(const turning::CurvedContour& contour) {
     }
     const turning::PieceArc& arc = *piece.arc;
     const bool halves = std::abs(arc.sweep_rad) > kPi;
-    const double bulge = std::tan(arc.sweep_rad / (halves ? 8 : 4));
+    const double bulge = portable::tan(arc.sweep_rad / (halves ? 8 : 4));
     curve.corners.push_back({piece.from_mm, bulge});
     if (!halves) continue;
     const Vec2 arm = piece.from_mm - arc.center_mm;
-    const double angle = std::atan2(arm.y, arm.x) + arc.sweep_rad / 2;
+    const double angle = portable::atan2(arm.y, arm.x) + arc.sweep_rad / 2;
     curve.corners.push_back(
-        {arc.center_mm + arc.radius_mm * Vec2(std::cos(angle), std::sin(angle)), bulge});
+        {arc.center_mm + arc.radius_mm * Vec2(portable::cos(angle), portable::sin(angle)), bulge});
   }
   return curve;
 }

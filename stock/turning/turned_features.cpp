@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/portable_math.h"
 #include "stock/turning/contour_arcs.h"
 
 namespace kerf {
@@ -25,8 +26,8 @@ Vec2 outward_of(const ContourPiece& piece) {
     return {way.y, -way.x};
   }
   const Vec2 arm = piece.from_mm - piece.arc->center_mm;
-  const double angle = std::atan2(arm.y, arm.x) + piece.arc->sweep_rad / 2;
-  return (piece.arc->sweep_rad > 0 ? 1.0 : -1.0) * Vec2(std::cos(angle), std::sin(angle));
+  const double angle = portable::atan2(arm.y, arm.x) + piece.arc->sweep_rad / 2;
+  return (piece.arc->sweep_rad > 0 ? 1.0 : -1.0) * Vec2(portable::cos(angle), portable::sin(angle));
 }
 
 bool is_on_axis(const ContourPiece& piece) {
@@ -37,7 +38,7 @@ bool is_on_axis(const ContourPiece& piece) {
 bool sweeps(const ContourPiece& piece, double angle_rad) {
   const Vec2 arm = piece.from_mm - piece.arc->center_mm;
   const double sense = piece.arc->sweep_rad > 0 ? 1 : -1;
-  double along = std::fmod(sense * (angle_rad - std::atan2(arm.y, arm.x)), 2 * kPi);
+  double along = std::fmod(sense * (angle_rad - portable::atan2(arm.y, arm.x)), 2 * kPi);
   if (along < 0) along += 2 * kPi;
   return along <= std::abs(piece.arc->sweep_rad);
 }
@@ -49,8 +50,8 @@ std::pair<Vec2, Vec2> extent_of(const ContourPiece& piece) {
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double angle = quarter * kPi / 2;
     if (!sweeps(piece, angle)) continue;
-    const Vec2 at =
-        piece.arc->center_mm + piece.arc->radius_mm * Vec2(std::cos(angle), std::sin(angle));
+    const Vec2 at = piece.arc->center_mm +
+                    piece.arc->radius_mm * Vec2(portable::cos(angle), portable::sin(angle));
     low = glm::min(low, at);
     high = glm::max(high, at);
   }
@@ -78,7 +79,7 @@ TurnedFeature surface_of(const ContourPiece& piece) {
     f.is_inside = false;
   } else {
     f.kind = Kind::kTaper;
-    f.angle_deg = std::atan((high.y - low.y) / (high.x - low.x)) * 180 / kPi;
+    f.angle_deg = portable::atan((high.y - low.y) / (high.x - low.x)) * 180 / kPi;
   }
   return f;
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/turning/contour.h"
 #include "stock/turning/convex_region.h"
 #include "stock/turning/insert_sweep.h"
@@ -28,7 +29,7 @@ double box_gap(const Rect& a, const Rect& b) {
   };
   const double along = std::max(apart(a.min_x, b.max_x), apart(b.min_x, a.max_x));
   const double across = std::max(apart(a.min_y, b.max_y), apart(b.min_y, a.max_y));
-  return std::hypot(along, across);
+  return portable::hypot(along, across);
 }
 
 struct Nearest {

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "stock/turning/turned_part.h"
 
 namespace kerf {
@@ -56,8 +57,8 @@ bool is_finite(const Vec2& p) { return std::isfinite(p.x) && std::isfinite(p.y);
 Vec2 mirrored(const Vec2& p) { return {p.x, -p.y}; }
 
 double angle_between(double heading_rad, const Vec2& way) {
-  const Vec2 ahead(std::cos(heading_rad), std::sin(heading_rad));
-  return std::atan2(ahead.x * way.y - ahead.y * way.x, glm::dot(ahead, way));
+  const Vec2 ahead(portable::cos(heading_rad), portable::sin(heading_rad));
+  return portable::atan2(ahead.x * way.y - ahead.y * way.x, glm::dot(ahead, way));
 }
 
 }  // namespace
@@ -121,7 +122,7 @@ TurnedPart::Winding TurnedPart::winding_after(const TurningTool& tool, const Tur
   const double angle = angle_between(after.heading_rad, whole);
   if (is_same_tool && winding_->lead_mm == move.lead_mm && length > 0 && angle >= after.low_rad &&
       angle <= after.high_rad && glm::dot(whole, way) > 0) {
-    const double wide = std::asin(std::min(1.0, kStraight_mm / glm::length(whole)));
+    const double wide = portable::asin(std::min(1.0, kStraight_mm / glm::length(whole)));
     after.low_rad = std::max(after.low_rad, angle - wide);
     after.high_rad = std::min(after.high_rad, angle + wide);
     return after;
@@ -129,8 +130,8 @@ TurnedPart::Winding TurnedPart::winding_after(const TurningTool& tool, const Tur
   after.lead_mm = move.lead_mm;
   after.from_mm = move.from_mm;
   after.from_turns = turns;
-  after.heading_rad = std::atan2(way.y, way.x);
-  after.high_rad = length > 0 ? std::asin(std::min(1.0, kStraight_mm / length)) : 0;
+  after.heading_rad = portable::atan2(way.y, way.x);
+  after.high_rad = length > 0 ? portable::asin(std::min(1.0, kStraight_mm / length)) : 0;
   after.low_rad = -after.high_rad;
   after.passes.clear();
   return after;

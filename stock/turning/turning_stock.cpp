@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
 #include "stock/state_bytes.h"
@@ -22,7 +23,7 @@ constexpr double kAxialLength_mm = 200;
 Vec2 in_plane(const Vec3& p) { return {p.z, p.x}; }
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   return c * v + s * glm::cross(axis, v) + (1 - c) * glm::dot(axis, v) * axis;
 }
 
@@ -184,11 +185,11 @@ std::optional<std::uint32_t> TurningStock::cut_id_at(const Vec3& point_mm) const
   /// As near as patches of the coarsest level are to the part: what is nearest counts.
   constexpr double kNear_mm = 3 * TurnedPart::kCoarsestPatch_mm;
   constexpr double kStep_rad = 2 * kPi / turning::kPatchSegments;
-  const double angle = std::atan2(point_mm.y, point_mm.x) / kStep_rad;
+  const double angle = portable::atan2(point_mm.y, point_mm.x) / kStep_rad;
   const double off_rad = (angle - std::floor(angle) - 0.5) * kStep_rad;
-  const double on_facet = std::hypot(point_mm.x, point_mm.y);
-  const double r = on_facet * std::cos(off_rad) / std::cos(kStep_rad / 2);
-  return part_.cut_id_at({point_mm.z, r}, std::atan2(point_mm.y, point_mm.x), kNear_mm);
+  const double on_facet = portable::hypot(point_mm.x, point_mm.y);
+  const double r = on_facet * portable::cos(off_rad) / portable::cos(kStep_rad / 2);
+  return part_.cut_id_at({point_mm.z, r}, portable::atan2(point_mm.y, point_mm.x), kNear_mm);
 }
 
 Done TurningStock::save(const std::string& path) const {

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "base/portable_math.h"
 #include "stock/turning/around.h"
 #include "stock/turning/revolve.h"
 
@@ -18,7 +19,7 @@ constexpr int kFewestSections = 72;
 
 Vec2 direction_at(int i, int segments) {
   const double angle = 2 * kPi * (i == segments ? 0 : i) / segments;
-  return {std::cos(angle), std::sin(angle)};
+  return {portable::cos(angle), portable::sin(angle)};
 }
 
 BandChain closed_chain_of(const Contour& contour) {

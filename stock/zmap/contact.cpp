@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "stock/zmap/contact_sweep.h"
 #include "stock/zmap/path_builder.h"
 
@@ -27,7 +28,7 @@ class Scan {
       : grid_(field.grid), field_(field), sweep_{tool, tolerance, from, step}, found_(found) {
     lowest_z_ = std::min(from.z, from.z + step.z);
     low_z_ = lowest_z_ + surface_height(tool, 0) + tolerance;
-    half_diagonal_ = 0.5 * std::hypot(grid_.cell_x_mm(), grid_.cell_y_mm());
+    half_diagonal_ = 0.5 * portable::hypot(grid_.cell_x_mm(), grid_.cell_y_mm());
     floor_z_ = std::max(grid_.bounds_mm().min.z, static_cast<double>(grid_.floor_mm()));
   }
   Found run();

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -37,17 +38,17 @@ ToolPiece line_piece(double r0, double z0, double r1, double z1) {
 }
 
 void append_hollow_arc(const ProfilePiece& arc, std::vector<ToolPiece>& out) {
-  const double a0 = std::atan2(arc.z0 - arc.center_z, arc.r0 - arc.center_r);
-  double a1 = std::atan2(arc.z1 - arc.center_z, arc.r1 - arc.center_r);
+  const double a0 = portable::atan2(arc.z0 - arc.center_z, arc.r0 - arc.center_r);
+  double a1 = portable::atan2(arc.z1 - arc.center_z, arc.r1 - arc.center_r);
   if (a1 - a0 > kPi) a1 -= 2 * kPi;
   if (a1 - a0 < -kPi) a1 += 2 * kPi;
-  const double step = 2 * std::acos(std::max(0.0, 1 - kProfileChord_mm / arc.radius));
+  const double step = 2 * portable::acos(std::max(0.0, 1 - kProfileChord_mm / arc.radius));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(a1 - a0) / step)));
   double r = arc.r0, z = arc.z0;
   for (int i = 1; i <= n; ++i) {
     const double a = a0 + (a1 - a0) * i / n;
-    const double r_next = i == n ? arc.r1 : arc.center_r + arc.radius * std::cos(a);
-    const double z_next = i == n ? arc.z1 : arc.center_z + arc.radius * std::sin(a);
+    const double r_next = i == n ? arc.r1 : arc.center_r + arc.radius * portable::cos(a);
+    const double z_next = i == n ? arc.z1 : arc.center_z + arc.radius * portable::sin(a);
     if (r_next - r > 1e-9) {
       out.push_back(line_piece(r, z, r_next, z_next));
       r = r_next;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/portable_math.h"
 #include "stock/zmap/part_pieces.h"
 
 namespace kerf {
@@ -130,7 +131,7 @@ void Search::scan(std::size_t index) {
       if (static_cast<double>(tops_.top_mm(grid_, tile)) <= level) continue;
       const Box box = grid_.tile_box(tile);
       const Vec3 middle = 0.5 * (box.min + box.max);
-      const double around = 0.5 * std::hypot(box.size().x, box.size().y);
+      const double around = 0.5 * portable::hypot(box.size().x, box.size().y);
       p.windows(middle.x, middle.y, reach_ + around, over_);
       if (over_.empty()) continue;
       scan_tile(index,

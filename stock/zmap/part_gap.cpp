@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/zmap/part_pieces.h"
 
 namespace kerf {
@@ -48,7 +49,7 @@ void for_each_near_tile(const TileGrid& grid, TileTops& tops, const CarriedPart&
       const double above = bottom - static_cast<double>(tops.top_mm(grid, tile));
       if (above >= within) continue;
       const Box box = grid.tile_box(tile);
-      const double half = 0.5 * std::hypot(box.size().x, box.size().y);
+      const double half = 0.5 * portable::hypot(box.size().x, box.size().y);
       const Vec3 middle = 0.5 * (box.min + box.max);
       const double across = piece.distance(middle.x, middle.y, kWhole) - half - part.radius_mm;
       const double least = gap_of(across, above);
@@ -135,8 +136,8 @@ void GapSearch::divide(double top_mm) {
       if (piece.turns) {
         const double half = 0.5 * std::abs(piece.sweep_rad) * (level.to_t - level.from_t);
         const double angle = piece.begin_rad + 0.5 * (level.from_t + level.to_t) * piece.sweep_rad;
-        level.middle = {std::cos(angle), std::sin(angle)};
-        level.cos_half = half >= kPi ? -2 : std::cos(half);
+        level.middle = {portable::cos(angle), portable::sin(angle)};
+        level.cos_half = half >= kPi ? -2 : portable::cos(half);
       }
       levels_.push_back(level);
     }
@@ -229,7 +230,7 @@ void GapSearch::run(const TileGrid& grid, TileTops& tops) {
 
 double find_part_spare_mm(const TileGrid& grid, TileTops& tops, const CarriedPart& part,
                           const CutMove& move, double enough_mm, double most_mm) {
-  const double half_cell = 0.5 * std::hypot(grid.cell_x_mm(), grid.cell_y_mm());
+  const double half_cell = 0.5 * portable::hypot(grid.cell_x_mm(), grid.cell_y_mm());
   double spare = most_mm;
   for (const PartPiece& piece : pieces_of(move, kChord_mm)) {
     const double bottom = std::min(piece.z(0), piece.z(1)) + part.from_z_mm;

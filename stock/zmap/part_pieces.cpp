@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "base/portable_math.h"
 #include "stock/zmap/path_builder.h"
 
 namespace kerf {
@@ -53,7 +54,7 @@ void PartPiece::windows(double x, double y, double radius, PartWindows& out) con
     if (window.t0 <= window.t1) out.push_back(window);
     return;
   }
-  const double qx = x - center.x, qy = y - center.y, q = std::hypot(qx, qy);
+  const double qx = x - center.x, qy = y - center.y, q = portable::hypot(qx, qy);
   if (std::abs(q - arm) > radius) return;
   if (q + arm <= radius) {
     out.push_back({0, 1});
@@ -61,10 +62,10 @@ void PartPiece::windows(double x, double y, double radius, PartWindows& out) con
   }
   // The law of cosines: the distance is `radius` so far on either side of the column's own angle.
   const double cosine = (q * q + arm * arm - radius * radius) / (2 * q * arm);
-  const double half = std::acos(std::clamp(cosine, -1.0, 1.0));
+  const double half = portable::acos(std::clamp(cosine, -1.0, 1.0));
   const double end_rad = begin_rad + sweep_rad;
   const double low = std::min(begin_rad, end_rad), high = std::max(begin_rad, end_rad);
-  const double own = std::atan2(qy, qx);
+  const double own = portable::atan2(qy, qx);
   double middle = own + 2 * kPi * std::ceil((low - half - own) / (2 * kPi));
   for (; middle - half <= high; middle += 2 * kPi) {
     const double a = std::max(low, middle - half), b = std::min(high, middle + half);
@@ -84,8 +85,9 @@ std::optional<PartPiece> arc_piece(const CutMove& move) {
   const CutArc& arc = *move.arc;
   if (std::abs(arc.axis.z) < 1 - 1e-12 || arc.sweep_rad == 0) return std::nullopt;
   const double begin =
-      std::hypot(move.from_mm.x - arc.center_mm.x, move.from_mm.y - arc.center_mm.y);
-  const double end = std::hypot(move.to_mm.x - arc.center_mm.x, move.to_mm.y - arc.center_mm.y);
+      portable::hypot(move.from_mm.x - arc.center_mm.x, move.from_mm.y - arc.center_mm.y);
+  const double end =
+      portable::hypot(move.to_mm.x - arc.center_mm.x, move.to_mm.y - arc.center_mm.y);
   if (std::abs(begin - end) > kSameRadius_mm || begin == 0) return std::nullopt;
   PartPiece piece;
   piece.turns = true;
@@ -93,7 +95,8 @@ std::optional<PartPiece> arc_piece(const CutMove& move) {
   piece.step = {0, 0, move.to_mm.z - move.from_mm.z};
   piece.center = {arc.center_mm.x, arc.center_mm.y};
   piece.arm = 0.5 * (begin + end);
-  piece.begin_rad = std::atan2(move.from_mm.y - arc.center_mm.y, move.from_mm.x - arc.center_mm.x);
+  piece.begin_rad =
+      portable::atan2(move.from_mm.y - arc.center_mm.y, move.from_mm.x - arc.center_mm.x);
   piece.sweep_rad = arc.axis.z < 0 ? -arc.sweep_rad : arc.sweep_rad;
   return piece;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/portable_math.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/tile_grid.h"
 
@@ -38,7 +39,7 @@ struct PartPiece {
   Vec3 tip(double t) const {
     if (!turns) return from + t * step;
     const double angle = begin_rad + t * sweep_rad;
-    return {center.x + arm * std::cos(angle), center.y + arm * std::sin(angle), z(t)};
+    return {center.x + arm * portable::cos(angle), center.y + arm * portable::sin(angle), z(t)};
   }
   /// Around the axis on all of it.
   void bounds(Vec2& low, Vec2& high) const;

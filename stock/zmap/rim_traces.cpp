@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "stock/zmap/cutter_components.h"
 
 namespace kerf {
@@ -17,7 +18,7 @@ constexpr int kLeastLooks = 32, kMostLooks = 2048;
 constexpr int kHalvings = 40;
 
 double distance(const Vec2& center, const Vec3& p) {
-  return std::hypot(p.x - center.x, p.y - center.y);
+  return portable::hypot(p.x - center.x, p.y - center.y);
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ bool RimTraces::is_near(const Vec3& a, const Vec3& b, double beyond_mm, double r
 }
 
 std::size_t RimTraces::Rim::at(double x, double y) const {
-  const double turn = std::atan2(y - center.y, x - center.x) / (2 * kPi);
+  const double turn = portable::atan2(y - center.y, x - center.x) / (2 * kPi);
   const auto count = static_cast<double>(lowest.size());
   const double place = std::floor((turn < 0 ? turn + 1 : turn) * count);
   return static_cast<std::size_t>(std::clamp(place, 0.0, count - 1));
@@ -79,8 +80,8 @@ void RimTraces::add_to(Rim& rim, const Vec3& a, const Vec3& b, double radius_mm,
                        double step_mm) {
   if (std::min(a.z, b.z) + low_mm >= rim.top) return;
   const Vec3 way = b - a;
-  const int pieces = static_cast<int>(std::ceil(std::hypot(way.x, way.y) / step_mm)) + 1;
-  const double reach = radius_mm + 0.5 * std::hypot(way.x, way.y) / pieces;
+  const int pieces = static_cast<int>(std::ceil(portable::hypot(way.x, way.y) / step_mm)) + 1;
+  const double reach = radius_mm + 0.5 * portable::hypot(way.x, way.y) / pieces;
   for (int i = 0; i < pieces; ++i) {
     const Vec3 middle = a + (i + 0.5) / pieces * way;
     const double off = distance(rim.center, middle);
@@ -90,11 +91,12 @@ void RimTraces::add_to(Rim& rim, const Vec3& a, const Vec3& b, double radius_mm,
       const bool whole = off * off - reach * reach <= rim.outer * rim.outer;
       const double seen =
           (off * off + rim.outer * rim.outer - reach * reach) / (2 * off * rim.outer);
-      half_angle = whole ? std::asin(reach / off) : std::acos(std::clamp(seen, -1.0, 1.0));
+      half_angle =
+          whole ? portable::asin(reach / off) : portable::acos(std::clamp(seen, -1.0, 1.0));
     }
     const double z = std::min(a.z + way.z * i / pieces, a.z + way.z * (i + 1) / pieces) + low_mm;
     if (z >= rim.top) continue;
-    rim.lower(std::atan2(middle.y - rim.center.y, middle.x - rim.center.x), half_angle, z);
+    rim.lower(portable::atan2(middle.y - rim.center.y, middle.x - rim.center.x), half_angle, z);
   }
 }
 
@@ -120,7 +122,7 @@ double RimTraces::Rim::depth(const ConvexTool& tool, const TipWay& way, double t
 RimTraces::Touch RimTraces::first_touch(const ConvexTool& tool, const TipWay& way,
                                         double tolerance_mm) const {
   Touch touch;
-  const double length = std::hypot(way.step.x, way.step.y);
+  const double length = portable::hypot(way.step.x, way.step.y);
   const double lowest = std::min(way.from.z, way.from.z + way.step.z) + surface_height(tool, 0);
   for (const Rim& rim : rims_) {
     if (lowest >= rim.top - tolerance_mm) continue;

@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "mesh/mesh_lows.h"
 #include "stock/zmap/cutter_components.h"
 #include "stock/zmap/path_builder.h"
@@ -22,7 +23,7 @@ TipTraces::TipTraces(const TileGrid& grid)
       y0_(grid.bounds_mm().min.y),
       cell_x_(grid.cell_x_mm()),
       cell_y_(grid.cell_y_mm()),
-      half_diagonal_(0.5 * std::hypot(cell_x_, cell_y_)),
+      half_diagonal_(0.5 * portable::hypot(cell_x_, cell_y_)),
       nx_(grid.nx()),
       ny_(grid.ny()),
       tiles_x_(grid.tiles_x()),

@@ -129,7 +129,8 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
   std::string of_others =
       read_file(kRoot / "scripts/format_check") + read_file(kRoot / "tests/truth/run_truth") +
       read_file(kRoot / "check") + read_file(kRoot / "examples/ci/kerf.yml") +
-      read_file(kRoot / "examples/ci/pre-commit") + read_file(kRoot / "configs/vismach_links") +
+      read_file(kRoot / "examples/ci/pre-commit") + read_file(kRoot / "scripts/make_packages") +
+      read_file(kRoot / "configs/vismach_links") +
       read_file(kRoot / "tests/twin/compare/planted/run_planted");
   of_others += run_kerf("machine --help").output + " --build --preset --workflow --install ";
   const Words foreign = find_all(of_others, R"((--[a-z][a-z-]+))");
@@ -143,10 +144,14 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
   for (const std::string& option : known) EXPECT_TRUE(told.contains(option)) << option;
 }
 
+/// "\-" as it is read.
+std::string without_escapes(std::string manual) {
+  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
+  return manual;
+}
+
 /// In the order in which the shells see them: of each command its own.
 TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
-  std::string manual = run_kerf("config man").output;
-  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
   const std::string bash = run_kerf("config completion bash").output;
   const std::string zsh = run_kerf("config completion zsh").output;
   // Between "  run)" and the next command.
@@ -165,6 +170,8 @@ TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
     const Words in_zsh = find_all(part(zsh, command), R"((?:[,'*])(--[a-z-]+)[\['}])");
     EXPECT_EQ(in_bash, options) << command;
     EXPECT_EQ(in_zsh, options) << command;
+    const std::string manual = without_escapes(run_kerf("config man kerf-" + command).output);
+    EXPECT_NE(manual.find("kerf-" + command + " - "), std::string::npos);
     for (const std::string& option : options) {
       if (option == "--help") continue;
       EXPECT_NE(manual.find("\\fB" + option + "\\fR"), std::string::npos) << option;
@@ -174,8 +181,7 @@ TEST(Documents, EveryOptionOfHelpStandsInTheManualAndInTheCompletions) {
 
 TEST(Documents, EveryKeyStandsInTheManual) {
   const std::string schema = run_kerf("config schema").output;
-  std::string manual = run_kerf("config man").output;
-  for (std::size_t at = 0; (at = manual.find("\\-", at)) != manual.npos;) manual.erase(at, 1);
+  const std::string manual = without_escapes(run_kerf("config man").output);
   ASSERT_GT(schema.size(), 1000u);
   EXPECT_NE(manual.find(schema), std::string::npos);
 }

@@ -1,8 +1,10 @@
 // Holds the tree to the include directions of ARCHITECTURE.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "tests/layering/include_rules.h"
@@ -236,6 +238,35 @@ TEST(Layering, TheTreeKeepsTheRules) {
     for (std::string& violation : check_includes(path, text.str(), sources)) {
       violations.push_back(std::move(violation));
     }
+  }
+  EXPECT_EQ(violations, Strings{});
+}
+
+/// What decides the contents of a workpiece calls no function of the C library whose last bit goes
+/// by the processor: base/portable_math.h has them.
+TEST(Layering, WhatCutsHasTheSameBitsOnEveryProcessor) {
+  const std::regex by_processor(R"(\bstd::(sin|cos|tan|atan2?|asin|acos|hypot)\()");
+  const Strings cutting{"stock/",
+                        "mesh/",
+                        "surface/",
+                        "interp_bridge/",
+                        "twin/motion/",
+                        "twin/machine/",
+                        "twin/machines/",
+                        "twin/job/",
+                        "twin/process/turning/",
+                        "twin/collision/",
+                        "twin/process/torch/",
+                        "twin/process/punch/"};
+  Strings violations;
+  for (const std::string& path : project_sources()) {
+    const auto holds = [&](const std::string& folder) { return path.starts_with(folder); };
+    if (std::none_of(cutting.begin(), cutting.end(), holds)) continue;
+    if (path.starts_with("interp_bridge/kerf_interp/")) continue;  // prints what LinuxCNC computes
+    std::ifstream in(fs::path(KERF_SOURCE_DIR) / path);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (std::regex_search(text.str(), by_processor)) violations.push_back(path);
   }
   EXPECT_EQ(violations, Strings{});
 }

@@ -1,6 +1,7 @@
 #include "twin/cli/config_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -32,6 +33,23 @@ int print_completion(const std::string& shell) {
                 "source <(kerf config completion bash)");
 }
 
+/// A manual page by its name. The names of commands alone are commands, wherever they stand.
+int print_manual(const std::string& page) {
+  if (page.empty() || page == "kerf") {
+    kerf::print(stdout, "{}", man_page());
+    return kExitGood;
+  }
+  std::vector<std::string> names{"kerf"};
+  for (const CommandRow& row : command_table()) {
+    names.push_back(name_of_page(row));
+    if (names.back() != page) continue;
+    kerf::print(stdout, "{}", man_page_of(row));
+    return kExitGood;
+  }
+  return refuse(trf("config man: '{}' is no page; allowed: {}", page, fmt::join(names, ", ")),
+                "kerf config man kerf-run");
+}
+
 int read_and_say(const std::string& action, const std::string& file,
                  const std::vector<std::string>& sets) {
   Diagnostics diagnostics;
@@ -57,6 +75,7 @@ int config_command(const Arguments& arguments) {
     return refuse(trf("config: '{}' is no action; allowed: {}", action, fmt::join(actions, ", ")));
   }
   if (action == "completion" && sets.empty()) return print_completion(file);
+  if (action == "man" && sets.empty()) return print_manual(file);
   if (action == "check" || action == "print") {
     if (!file.empty() || !sets.empty()) return read_and_say(action, file, sets);
     return refuse(trf("config {}: no file is named", action), trf("kerf config {} FILE", action));
@@ -68,11 +87,7 @@ int config_command(const Arguments& arguments) {
     kerf::print(stdout, "{}", schema_text());
     return kExitGood;
   }
-  if (!file.empty() || !sets.empty()) {
-    return refuse(trf("config {} is about kerf itself; it takes no file and no --set", action));
-  }
-  kerf::print(stdout, "{}", man_page());
-  return kExitGood;
+  return refuse(trf("config {} is about kerf itself; it takes no --set", action));
 }
 
 }  // namespace kerf

@@ -1,6 +1,7 @@
 #include "twin/cli/job_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,6 @@
 // What a job came to, as JSON and as text.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

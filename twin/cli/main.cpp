@@ -21,6 +21,7 @@
 #include "twin/cli/batch_command.h"
 #include "twin/cli/canon_command.h"
 #include "twin/cli/cli_options.h"
+#include "twin/cli/command_examples.h"
 #include "twin/cli/config_command.h"
 #include "twin/cli/console.h"
 #include "twin/cli/diff_command.h"
@@ -36,87 +37,6 @@
 
 namespace kerf {
 namespace {
-
-constexpr const char* kExamples =
-    "Examples:\n"
-    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --png part.png\n"
-    "  kerf shadow -c mill.yaml --program part.ngc\n"
-    "  kerf replay run.csv --speed max --stock box:0,0,-20:100,60,0\n"
-    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
-    "  kerf diff old.ngc new.ngc\n"
-    "  kerf optimize part.ngc -o fast.ngc --max-rate 300\n"
-    "  kerf batch parts --out results\n"
-    "  kerf canon part.ngc\n"
-    "  kerf models\n"
-    "  kerf tools\n";
-
-constexpr const char* kRunExample =
-    "Examples:\n"
-    "  kerf run part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --json - --stl part.stl\n"
-    "  kerf run plate.ngc --stock sheet:0,0:600,400:3 --kerf 1.2 --pierce 3 --dxf rest.dxf\n";
-
-constexpr const char* kViewExample =
-    "Examples:\n"
-    "  kerf view part.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
-    "  kerf view part.ngc --frames film --fps 25 --speed 10\n";
-
-constexpr const char* kDiffExample = tr_noop(
-    "Exit code 0: the same; 1: different.\n\n"
-    "Examples:\n"
-    "  kerf diff old.ngc new.ngc --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
-    "  kerf diff part.ngc part.state --json -\n");
-
-constexpr const char* kOptimizeExample = tr_noop(
-    "Only F words are changed. The new program is read and cut again: it appears if its motions\n"
-    "are the same, bit for bit, so is the workpiece, and no limit is exceeded.\n\n"
-    "Examples:\n"
-    "  kerf optimize part.ngc -o fast.ngc --chip 0.05 --tool 1=flat:10:teeth=3 --ini mill.ini\n"
-    "  kerf optimize part.ngc --in-place --max-rate 300 --max-feed 2500 --air-feed 4000\n");
-
-constexpr const char* kJobExample =
-    "Example:\n"
-    "  kerf job examples/job/housing.yaml --png pictures --json job.json\n";
-
-constexpr const char* kBatchExample =
-    "Examples:\n"
-    "  kerf batch parts --out results --stock box:0,0,-20:100,60,0 --tool 1=flat:6\n"
-    "  git ls-files '*.ngc' | kerf batch - --out results --jobs 4 --options options.txt\n";
-
-constexpr const char* kCanonExample = tr_noop(
-    "Each line is an object: line, file, kind, from, to, feed, tool, t, duration, and what else\n"
-    "applies; mm, mm/min, s, degrees.\n\n"
-    "Example:\n"
-    "  kerf canon part.ngc | jq -c 'select(.kind == \"traverse\") | .to'\n");
-
-constexpr const char* kShadowExample =
-    "Examples:\n"
-    "  kerf shadow --set source.type=hal --ini mill.ini --program part.ngc --stock "
-    "box:0,0,-20:100,60,0\n"
-    "  kerf shadow -c mill.yaml --record run.csv\n";
-
-constexpr const char* kReplayExample =
-    "Example:\n"
-    "  kerf replay run.csv --stock box:0,0,-20:100,60,0 --tool 1=flat:6 --speed max --png "
-    "part.png\n";
-
-constexpr const char* kConfigExample =
-    "Examples:\n"
-    "  kerf config check mill.yaml\n"
-    "  kerf config print mill.yaml\n"
-    "  kerf config schema\n"
-    "  kerf config completion bash\n"
-    "  kerf config man\n";
-
-constexpr const char* kMachineExample =
-    "Example:\n"
-    "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502 --frame workpiece\n";
-
-constexpr const char* kToolsExample =
-    "Examples:\n"
-    "  kerf tools\n"
-    "  kerf tools --holders\n"
-    "  kerf tools --inserts\n"
-    "  kerf tools shop.json\n";
 
 constexpr const char* kSourceList = tr_noop(
     "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
@@ -202,31 +122,28 @@ int print_list(const std::string& text) {
   return kExitGood;
 }
 
-/// What each command prints below its options, and what it calls.
+/// What each command calls.
 struct CommandCall {
   Command command;
-  const char* footer;
   int (*call)(const Arguments&);
 };
 
 constexpr std::array kCalls{
-    CommandCall{kRun, kRunExample, run_command},
-    CommandCall{kView, kViewExample, view_command},
-    CommandCall{kShadow, kShadowExample, live_command},
-    CommandCall{kReplay, kReplayExample, live_command},
-    CommandCall{kDiff, kDiffExample, diff_command},
-    CommandCall{kOptimize, kOptimizeExample, optimize_command},
-    CommandCall{kBatch, kBatchExample, batch_command},
-    CommandCall{kJob, kJobExample, job_command},
-    CommandCall{kCanon, kCanonExample, canon_command},
-    CommandCall{kConfig, kConfigExample, config_command},
+    CommandCall{kRun, run_command},
+    CommandCall{kView, view_command},
+    CommandCall{kShadow, live_command},
+    CommandCall{kReplay, live_command},
+    CommandCall{kDiff, diff_command},
+    CommandCall{kOptimize, optimize_command},
+    CommandCall{kBatch, batch_command},
+    CommandCall{kJob, job_command},
+    CommandCall{kCanon, canon_command},
+    CommandCall{kConfig, config_command},
     // Found and started by machine_command(), before this is asked.
-    CommandCall{kMachine, kMachineExample, [](const Arguments&) -> int { return kExitUsage; }},
-    CommandCall{kModels, "Example:\n  kerf models\n",
-                [](const Arguments&) { return print_list(model_list()); }},
-    CommandCall{kSources, "Example:\n  kerf sources\n",
-                [](const Arguments&) { return print_list(tr(kSourceList)); }},
-    CommandCall{kTools, kToolsExample, tools_command},
+    CommandCall{kMachine, [](const Arguments&) -> int { return kExitUsage; }},
+    CommandCall{kModels, [](const Arguments&) { return print_list(model_list()); }},
+    CommandCall{kSources, [](const Arguments&) { return print_list(tr(kSourceList)); }},
+    CommandCall{kTools, tools_command},
 };
 
 /// The commands with their arguments, and what each of them calls.
@@ -237,7 +154,7 @@ struct Commands {
         return one.command == row.command;
       });
       CLI::App* const command = app.add_subcommand(row.name, tr(row.purpose));
-      command->footer(std::string(tr(call->footer)) + "\n" + tr(kExitCodes));
+      command->footer(tr(examples_of(row.command)) + std::string("\n") + tr(kExitCodes));
       command->allow_extras();
       all.push_back(command);
       calls.push_back({command, call->call, std::make_unique<Arguments>()});
@@ -284,7 +201,7 @@ int run(int argc, char** argv) {
          "workpiece, beside the machine or without it"),
       "kerf");
   speak_language(app, "kerf " + version_text());
-  app.footer(std::string(kExamples) + "\n" + tr(kExitCodes));
+  app.footer(std::string(examples_of_kerf()) + "\n" + tr(kExitCodes));
   app.allow_extras();
   const Commands commands(app, std::vector<std::string>(argv, argv + argc));
   for (CLI::App* const command : commands.all) {

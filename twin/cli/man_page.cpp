@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string_view>
-#include <vector>
 
 #include "base/exit_code.h"
 #include "base/translate.h"
+#include "twin/cli/command_examples.h"
 #include "twin/config/key_table.h"
 #include "twin/config/live_config.h"
 
@@ -51,48 +52,56 @@ std::string synopsis_of(const CommandRow& row) {
                      has_options ? fmt::format(" [{}]", slanted(tr("OPTIONS"))) : "", operands);
 }
 
-/// "run, view; stock.cell_mm": whose it is, and by which key.
-std::string belongs_to(const Setting& setting) {
-  std::vector<std::string> commands;
-  for (const CommandRow& row : command_table()) {
-    if ((setting.commands & row.command) != 0) commands.emplace_back(row.name);
-  }
-  std::string text = fmt::format("kerf {}", fmt::join(commands, ", "));
-  if (!setting.key.empty()) text += trf("; key {}", setting.key);
-  return text;
-}
-
 std::string option_entry(const Setting& setting) {
   std::string head = setting.is_positional() ? slanted(setting.option) : bold(setting.option);
   if (!setting.short_name.empty()) head = bold(setting.short_name) + ", " + head;
   if (*setting.value_name != 0) head += " " + slanted(setting.value_name);
-  return fmt::format(".TP\n{}\n{}\n.br\n({})\n", head, plain(help_of(setting)),
-                     plain(belongs_to(setting)));
+  std::string entry = fmt::format(".TP\n{}\n{}\n", head, plain(help_of(setting)));
+  if (!setting.key.empty()) {
+    entry += fmt::format(".br\n{}\n", plain(trf("(key {})", setting.key)));
+  }
+  return entry;
 }
 
-/// The schema, as it is.
-std::string configuration_section() {
-  return section(tr("CONFIGURATION")) + ".nf\n" + plain(schema_text()) + ".fi\n";
+std::string head_of(std::string name, std::string_view purpose) {
+  std::string title = name;
+  for (char& c : title) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return fmt::format(".TH {} 1 \"\" \"kerf {}\" \"\"\n", plain(title), KERF_VERSION) +
+         section(tr("NAME")) + fmt::format("{} \\- {}\n", plain(name), plain(purpose));
 }
+
+/// Lines that stay as they are.
+std::string as_written(std::string_view text) { return ".nf\n" + plain(text) + ".fi\n"; }
 
 }  // namespace
 
 std::string man_page() {
-  std::string text = fmt::format(".TH KERF 1 \"\" \"kerf {}\" \"\"\n", KERF_VERSION);
-  text += section(tr("NAME"));
-  text += "kerf \\- " + plain(tr("a twin of a machine under LinuxCNC")) + "\n";
+  std::string text = head_of("kerf", tr("a twin of a machine under LinuxCNC"));
   text += section(tr("SYNOPSIS"));
   for (const CommandRow& row : command_table()) text += synopsis_of(row);
   text += section(tr("COMMANDS"));
   for (const CommandRow& row : command_table()) {
-    text += fmt::format(".TP\n{}\n{}\n", bold(row.name), plain(tr(row.purpose)));
+    text += fmt::format(".TP\n{}\n{}\n.br\n{}\n", bold(row.name), plain(tr(row.purpose)),
+                        plain(trf("{}(1) has its options.", name_of_page(row))));
   }
+  text += section(tr("EXAMPLES")) + as_written(examples_of_kerf());
+  text += section(tr("CONFIGURATION")) + as_written(schema_text());
+  text += section(tr("EXIT STATUS")) + as_written(tr(kExitCodes));
+  return text;
+}
+
+std::string name_of_page(const CommandRow& command) { return fmt::format("kerf-{}", command.name); }
+
+std::string man_page_of(const CommandRow& command) {
+  std::string text = head_of(name_of_page(command), tr(command.purpose));
+  text += section(tr("SYNOPSIS")) + synopsis_of(command);
   text += section(tr("OPTIONS"));
   for (const Setting& setting : setting_table()) {
-    if (!setting.option.empty()) text += option_entry(setting);
+    if ((setting.commands & command.command) != 0) text += option_entry(setting);
   }
-  text += configuration_section();
-  text += section(tr("EXIT STATUS")) + ".nf\n" + plain(tr(kExitCodes)) + ".fi\n";
+  text += section(tr("EXAMPLES")) + as_written(tr(examples_of(command.command)));
+  text += section(tr("EXIT STATUS")) + as_written(tr(kExitCodes));
+  text += section(tr("SEE ALSO")) + bold("kerf") + "(1)\n";
   return text;
 }
 

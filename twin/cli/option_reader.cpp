@@ -1,6 +1,7 @@
 #include "twin/cli/option_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>

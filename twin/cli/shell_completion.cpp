@@ -1,6 +1,7 @@
 #include "twin/cli/shell_completion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "twin/cli/man_page.h"
 #include "twin/config/key_table.h"
 
 namespace kerf {
@@ -44,6 +46,20 @@ std::string keys_with_equals() {
   }
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return fmt::format("{}", fmt::join(keys, " "));
+}
+
+/// "run view ..".
+std::string all_commands() {
+  std::vector<std::string> names;
+  for (const CommandRow& row : command_table()) names.emplace_back(row.name);
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+/// "kerf kerf-run ..".
+std::string manual_pages() {
+  std::vector<std::string> names{"kerf"};
+  for (const CommandRow& row : command_table()) names.push_back(name_of_page(row));
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 /// Its value, or each of its values, is the name of a file.
@@ -169,12 +185,10 @@ std::string zsh_spec(const Setting& setting) {
 
 std::string bash_completion() {
   std::string text(kBashHead);
-  std::vector<std::string> commands;
-  for (const CommandRow& row : command_table()) commands.emplace_back(row.name);
   text += fmt::format("  keys='{}'\n", keys_with_equals());
   text += fmt::format(
       "  if ((COMP_CWORD == 1)); then\n    _kerf_words '{} --help --version'\n    return\n  fi\n",
-      fmt::join(commands, " "));
+      all_commands());
   text += "  case $option in\n";
   std::string_view last;
   for (const Setting& setting : key_table()) {
@@ -189,8 +203,9 @@ std::string bash_completion() {
     if (row.command == kConfig) {
       text += fmt::format(
           "    if ((COMP_CWORD == 2)); then\n      _kerf_words '{} --set --help'\n      return\n"
-          "    fi\n    [[ $option == completion ]] && _kerf_words '{}' && return\n",
-          with_blanks(actions_of_config()), kShells);
+          "    fi\n    [[ $option == completion ]] && _kerf_words '{}' && return\n"
+          "    [[ $option == man ]] && _kerf_words '{}' && return\n",
+          with_blanks(actions_of_config()), kShells, manual_pages());
     }
     text += "    case $option in\n" + bash_cases(row.command) + "    esac\n    ;;\n";
   }
@@ -217,8 +232,10 @@ std::string zsh_completion() {
     if (row.command == kConfig) {
       text += fmt::format(
           "    if [[ $words[2] == completion ]] && (( CURRENT == 3 )); then\n"
+          "      compadd {}\n      return\n    fi\n"
+          "    if [[ $words[2] == man ]] && (( CURRENT == 3 )); then\n"
           "      compadd {}\n      return\n    fi\n",
-          kShells);
+          kShells, manual_pages());
     }
     text += "    _arguments";
     for (const Setting* const setting : rows_of(row.command)) {

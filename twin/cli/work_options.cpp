@@ -1,6 +1,7 @@
 #include "twin/cli/work_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

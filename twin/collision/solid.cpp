@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -21,13 +23,13 @@ Vec3 axis_of(char letter) {
 /// A prism, its faces outward.
 TriangleMesh mesh_of_bar(const BlankBody& bar) {
   const auto n = static_cast<std::uint32_t>(bar.flats);
-  const double reach = bar.diameter_mm / 2 / std::cos(kPi / n);
+  const double reach = bar.diameter_mm / 2 / portable::cos(kPi / n);
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < n; ++i) {
     const double angle = 2 * kPi * (i + 0.5) / n;
     for (const double z : {bar.bounds_mm.min.z, bar.bounds_mm.max.z})
-      mesh.positions_mm.emplace_back(bar.center_mm.x + reach * std::cos(angle),
-                                     bar.center_mm.y + reach * std::sin(angle), z);
+      mesh.positions_mm.emplace_back(bar.center_mm.x + reach * portable::cos(angle),
+                                     bar.center_mm.y + reach * portable::sin(angle), z);
   }
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t here = 2 * i, next = 2 * ((i + 1) % n);
@@ -45,18 +47,18 @@ TriangleMesh mesh_of_tube(const BlankBody& tube) {
   const int along = tube.axis == 'x' ? 0 : tube.axis == 'y' ? 1 : 2;
   const int u = (along + 1) % 3, v = (along + 2) % 3;
   const double radius = tube.diameter_mm / 2;
-  const double half_turn = std::acos(1 - std::min(kFacet_mm / radius, 1.0));
+  const double half_turn = portable::acos(1 - std::min(kFacet_mm / radius, 1.0));
   const int facets = std::clamp(static_cast<int>(std::ceil(kPi / half_turn)), 16, kMostFacets);
   TriangleMesh mesh;
   for (int i = 0; i < facets; ++i) {
     const double angle = 2 * kPi * i / facets;
     for (const double r : {radius, tube.inner_diameter_mm / 2}) {
-      const double reach = r / std::sqrt(std::cos(kPi / facets));
+      const double reach = r / std::sqrt(portable::cos(kPi / facets));
       for (const double end : {tube.bounds_mm.min[along], tube.bounds_mm.max[along]}) {
         glm::dvec3 p{0};
         p[along] = end;
-        p[u] = tube.center_mm[u] + reach * std::cos(angle);
-        p[v] = tube.center_mm[v] + reach * std::sin(angle);
+        p[u] = tube.center_mm[u] + reach * portable::cos(angle);
+        p[v] = tube.center_mm[v] + reach * portable::sin(angle);
         mesh.positions_mm.emplace_back(p);
       }
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -146,7 +148,7 @@ ToolWay::ToolWay(const CutMove& move) : move_(move) {
     const double along = std::clamp(glm::dot(move.axis_from, move.axis_to), -1.0, 1.0);
     const Vec3 across = move.axis_to - along * move.axis_from;
     const double sine = glm::length(across);
-    tilt_rad_ = std::atan2(sine, along);
+    tilt_rad_ = portable::atan2(sine, along);
     if (sine > 0) tilt_toward_ = across / sine;
   }
   if (!move.arc) return;
@@ -166,7 +168,7 @@ Pose ToolWay::pose(double t) const {
   Vec3 axis = t <= 0 ? move_.axis_from : move_.axis_to;
   if (tilt_rad_ > 0 && t > 0 && t < 1) {
     const double angle = t * tilt_rad_;
-    axis = std::cos(angle) * move_.axis_from + std::sin(angle) * tilt_toward_;
+    axis = portable::cos(angle) * move_.axis_from + portable::sin(angle) * tilt_toward_;
   }
   Pose pose = upright_along(axis);
   if (!move_.arc) {
@@ -176,7 +178,7 @@ Pose ToolWay::pose(double t) const {
   const double angle = t * move_.arc->sweep_rad;
   const double radius = radius_from_ + t * (radius_to_ - radius_from_);
   pose.origin_mm = foot_ + t * along_ * move_.arc->axis +
-                   radius * (std::cos(angle) * arm_ + std::sin(angle) * side_);
+                   radius * (portable::cos(angle) * arm_ + portable::sin(angle) * side_);
   return pose;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -19,17 +20,17 @@ constexpr double kKnownDiameters = 4;
 std::vector<Vec2> corners_of(const ProfilePiece& piece) {
   std::vector<Vec2> out{{piece.r0, piece.z0}};
   if (piece.kind == ProfilePiece::Kind::kArc && piece.radius > 0) {
-    const double from = std::atan2(piece.z0 - piece.center_z, piece.r0 - piece.center_r);
-    double sweep = std::atan2(piece.z1 - piece.center_z, piece.r1 - piece.center_r) - from;
+    const double from = portable::atan2(piece.z0 - piece.center_z, piece.r0 - piece.center_r);
+    double sweep = portable::atan2(piece.z1 - piece.center_z, piece.r1 - piece.center_r) - from;
     if (sweep > kPi) sweep -= 2 * kPi;
     if (sweep < -kPi) sweep += 2 * kPi;
-    const double step = 2 * std::acos(std::max(1 - kChord_mm / piece.radius, -1.0));
+    const double step = 2 * portable::acos(std::max(1 - kChord_mm / piece.radius, -1.0));
     const int chords =
         std::clamp(static_cast<int>(std::ceil(std::abs(sweep) / step)), 1, kMostChords);
     for (int i = 1; i < chords; ++i) {
       const double angle = from + sweep * i / chords;
-      out.emplace_back(piece.center_r + piece.radius * std::cos(angle),
-                       piece.center_z + piece.radius * std::sin(angle));
+      out.emplace_back(piece.center_r + piece.radius * portable::cos(angle),
+                       piece.center_z + piece.radius * portable::sin(angle));
     }
   }
   out.emplace_back(piece.r1, piece.z1);

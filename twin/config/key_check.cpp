@@ -1,6 +1,7 @@
 #include "twin/config/key_check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -52,7 +52,8 @@ constexpr std::array kCallSettings{
     Setting{.option = "FILE",
             .commands = kConfig,
             .type = T::kFile,
-            .help = tr_noop("the configuration; after completion the shell: bash | zsh")},
+            .help = tr_noop("the configuration; after completion the shell: bash | zsh; after man "
+                            "a page: kerf-run")},
     Setting{.option = "--config",
             .commands = kRun | kDiff | kOptimize,
             .type = T::kFile,

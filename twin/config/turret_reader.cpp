@@ -1,6 +1,7 @@
 #include "twin/config/turret_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -1,11 +1,13 @@
 #include "twin/job/turning_row.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -31,7 +33,7 @@ std::string nose_text(double mm) { return number_text(std::round(mm * 1e6) / 1e6
 /// middle.
 int orientation_behind(const FlankAngles& angles) {
   const double middle = (angles.front_deg + angles.back_deg) / 2 * kRadPerDeg;
-  const Vec2 way(std::cos(middle), std::sin(middle));
+  const Vec2 way(portable::cos(middle), portable::sin(middle));
   int best = kUsualOrientation;
   double most = -2;
   for (int orientation = 1; orientation < kOrientations; ++orientation) {

@@ -1,6 +1,7 @@
 #include "twin/job/work_holding.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/suggest.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
@@ -192,7 +194,7 @@ Done add_tailstock(const TailstockSpec& tailstock, const TurnedProfile& blank,
                    std::vector<HoldingBody>& out) {
   const double end = high_z(blank), radius = tailstock.diameter_mm / 2;
   const double held = widest_within(blank, end - kFit_mm, end);
-  const double slope = std::tan(tailstock.angle_deg / 2 * kPi / 180);
+  const double slope = portable::tan(tailstock.angle_deg / 2 * kPi / 180);
   const double point = tailstock.point_mm.value_or(end - std::min(held / 3, radius / 2) / slope);
   const double full = point + radius / slope;
   if (point > end) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "twin/machines/builtin_gantry.h"
 #include "twin/machines/builtin_parts.h"
 
@@ -155,7 +156,8 @@ SwivelSizes swivel_sizes(const MachineRoom& room, const FittedRoom& fitted) {
   const Box& blank = fitted.blank_mm;
   double reach = 0;  // from the axis of C, which goes through X0 Y0
   for (const double x : {blank.min.x, blank.max.x}) {
-    for (const double y : {blank.min.y, blank.max.y}) reach = std::max(reach, std::hypot(x, y));
+    for (const double y : {blank.min.y, blank.max.y})
+      reach = std::max(reach, portable::hypot(x, y));
   }
   s.platter_radius = std::max(1.08 * reach + 8, 50.0);
   s.platter_thick = std::min(0.25 * s.platter_radius, 40.0);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "twin/machines/builtin_parts.h"
 
 namespace kerf {
@@ -142,8 +143,8 @@ MeshBuilder lathe_turret(const LatheSizes& s) {
   std::vector<Vec2> disc;
   for (int i = 0; i < kStations; ++i) {
     const double angle = 2 * kPi * (i + 0.5) / kStations;
-    const double corner = rim / std::cos(kPi / kStations);
-    disc.emplace_back(t + corner * std::cos(angle), corner * std::sin(angle));
+    const double corner = rim / portable::cos(kPi / kStations);
+    disc.emplace_back(t + corner * portable::cos(angle), corner * portable::sin(angle));
   }
   turret.prism(disc, 2, s.turret_near, s.turret_far);
   MeshBuilder station;

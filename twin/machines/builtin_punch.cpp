@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "twin/machines/builtin_parts.h"
 
 namespace kerf {
@@ -65,7 +66,7 @@ double station_ring(const PunchSizes& s) { return s.turret - 0.2 * s.unit; }
 /// one to the ram.
 Vec3 station_place(const PunchSizes& s, std::size_t i, std::size_t n) {
   const double angle = -2 * kPi * static_cast<double>(i) / static_cast<double>(n) - kPi / 2;
-  return station_ring(s) * Vec3(std::cos(angle), std::sin(angle), 0);
+  return station_ring(s) * Vec3(portable::cos(angle), portable::sin(angle), 0);
 }
 
 /// Both discs of the turret about its axis, with the stations around.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "twin/machines/builtin_parts.h"
 
 namespace kerf {
@@ -25,7 +26,7 @@ CradleSizes cradle_sizes(const Box& blank, const Vec3& rotation_point, const Vec
   double reach = 0;
   for (const double x : {blank.min.x, blank.max.x}) {
     for (const double y : {blank.min.y, blank.max.y}) {
-      reach = std::max(reach, std::hypot(x - rotation_point.x, y - rotation_point.y));
+      reach = std::max(reach, portable::hypot(x - rotation_point.x, y - rotation_point.y));
     }
   }
   s.platter_radius = std::max(1.08 * reach + 8, 60.0);
@@ -38,8 +39,8 @@ CradleSizes cradle_sizes(const Box& blank, const Vec3& rotation_point, const Vec
   const double aside = std::abs(offset.x) + std::abs(offset.y);
   s.half_depth = 0.7 * s.platter_radius + aside;
   const double side = s.platter_radius + aside;
-  s.sweep = std::max(std::hypot(side, std::max(std::abs(s.platter_top), std::abs(under))),
-                     std::hypot(s.half_depth, s.bottom));
+  s.sweep = std::max(portable::hypot(side, std::max(std::abs(s.platter_top), std::abs(under))),
+                     portable::hypot(s.half_depth, s.bottom));
   s.bearing = s.arm + s.arm_thick + 6 + 0.32 * s.platter_radius;
   return s;
 }

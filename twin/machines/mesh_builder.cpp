@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -110,7 +112,8 @@ void MeshBuilder::turned(const Vec3& base, int axis, std::span<const Vec2> outli
     const std::uint32_t corners = point.x > 0 ? kSides : 1;
     for (std::uint32_t side = 0; side < corners; ++side) {
       const double angle = 2 * kPi * side / kSides;
-      add_point(base + along(axis, point.x * std::cos(angle), point.x * std::sin(angle), point.y));
+      add_point(base + along(axis, point.x * portable::cos(angle), point.x * portable::sin(angle),
+                             point.y));
     }
   }
   for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "interp_bridge/timing/planner.h"
 
 namespace kerf {
@@ -70,7 +71,7 @@ Vec3 point_at(const Motion& m, double t) {
   const double radius = ends.r0 + t * (ends.r1 - ends.r0);
   const double angle = t * m.arc.sweep_rad;
   return m.arc.center_mm + along * m.arc.axis +
-         radius * (std::cos(angle) * u + std::sin(angle) * v);
+         radius * (portable::cos(angle) * u + portable::sin(angle) * v);
 }
 
 Box bounds_of(const Motion& m) {
@@ -88,8 +89,8 @@ Box bounds_of(const Motion& m) {
   for (int i = 0; i < 3; ++i) {
     // Coordinate i of the circle is greatest at this angle from the start, and least half a turn
     // on.
-    const double reach = radius * std::hypot(u[i], v[i]);
-    const double greatest = std::atan2(v[i], u[i]);
+    const double reach = radius * portable::hypot(u[i], v[i]);
+    const double greatest = portable::atan2(v[i], u[i]);
     for (const double sign : {1.0, -1.0}) {
       double angle = turn * (sign > 0 ? greatest : greatest + kPi);
       angle -= 2 * kPi * std::floor(angle / (2 * kPi));

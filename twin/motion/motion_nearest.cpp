@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -52,8 +53,8 @@ struct AxisView {
   double distance(double t) const {
     const double angle = t * arc.sweep_rad;
     const double radius = r0 + t * (r1 - r0);
-    const double dx = x - radius * std::cos(angle);
-    const double dy = y - radius * std::sin(angle);
+    const double dx = x - radius * portable::cos(angle);
+    const double dy = y - radius * portable::sin(angle);
     const double dz = along - (along0 + t * (along1 - along0));
     return std::sqrt(dx * dx + dy * dy + dz * dz);
   }
@@ -65,7 +66,7 @@ struct AxisView {
     for (int i = 0; i < kRefinements; ++i) {
       const double angle = t * arc.sweep_rad;
       const double radius = r0 + t * growth;
-      const double c = std::cos(angle), s = std::sin(angle);
+      const double c = portable::cos(angle), s = portable::sin(angle);
       const double ex = radius * c - x, ey = radius * s - y;
       const double ez = along0 + t * rise - along;
       const double px = growth * c - radius * arc.sweep_rad * s;
@@ -95,7 +96,7 @@ PointOnWay nearest_on_arc(const Motion& m, const Vec3& place, double from_t, dou
   if (sweep != 0 && view.r0 > 0) {
     const bool plain = view.along0 == view.along1 && view.r0 == view.r1;
     const double turn = 2 * kPi / std::abs(sweep);  // fraction of the way
-    double t = std::atan2(view.y, view.x) / sweep;
+    double t = portable::atan2(view.y, view.x) / sweep;
     t += turn * std::ceil((from_t - t) / turn - 1);  // the passage before from_t
     for (; t <= to_t + turn; t += turn) {
       consider(std::clamp(t, from_t, to_t));
@@ -125,7 +126,7 @@ struct TurnedWay {
   }
   bool stands() const { return way == Vec3(0) && slide_way == Vec3(0); }
   double distance(double t) const {
-    return std::hypot(glm::length(off - t * way), glm::length(slide_off - t * slide_way));
+    return portable::hypot(glm::length(off - t * way), glm::length(slide_off - t * slide_way));
   }
   Vec3 off{0}, way{0};
   Vec3 slide_off{0}, slide_way{0};
@@ -143,14 +144,14 @@ PointOnWay nearest_on_turning_line(const Motion& m, const Vec3& place, const Tur
     t = std::clamp(along / square, from_t, to_t);
   }
   const double tip_mm = glm::length(place - (m.from_mm + t * way));
-  return {t, std::hypot(tip_mm, turned.distance(t))};
+  return {t, portable::hypot(tip_mm, turned.distance(t))};
 }
 
 /// By trials, and by thirds about the best of them.
 PointOnWay nearest_on_turning_arc(const Motion& m, const Vec3& place, const TurnedWay& turned,
                                   double from_t, double to_t) {
   const auto distance = [&](double t) {
-    return std::hypot(glm::length(place - point_at(m, t)), turned.distance(t));
+    return portable::hypot(glm::length(place - point_at(m, t)), turned.distance(t));
   };
   const int trials = 16 + static_cast<int>(8 * std::abs(m.arc.sweep_rad));
   const double step = (to_t - from_t) / trials;
@@ -182,7 +183,7 @@ PointOnWay nearest_on(const Motion& m, const Vec3& place_mm, const TurnedAxes& t
   if (axes.stands()) {
     PointOnWay point = nearest_on(m, place_mm, from_t, to_t);
     const double off_mm = axes.distance(0);
-    if (off_mm > 0) point.distance_mm = std::hypot(point.distance_mm, off_mm);
+    if (off_mm > 0) point.distance_mm = portable::hypot(point.distance_mm, off_mm);
     return point;
   }
   return m.kind == MotionKind::kArc ? nearest_on_turning_arc(m, place_mm, axes, from_t, to_t)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -114,7 +115,7 @@ class Bit {
     const std::optional<double> neck = fields_.positive_mm("NeckDiameter");
     if (!angle || !neck) return trouble(tr("it has no CuttingEdgeAngle or no NeckDiameter"));
     tool_.shape = shape_text("dovetail", {d(), *angle, *neck});
-    const double height_mm = (d() - *neck) / 2 * std::tan(*angle * kRadPerDeg);
+    const double height_mm = (d() - *neck) / 2 * portable::tan(*angle * kRadPerDeg);
     if (tool_.flute_mm &&
         std::abs(height_mm - *tool_.flute_mm) > kHeightTolerance * *tool_.flute_mm) {
       out_.remarks.push_back(

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -163,7 +164,7 @@ class Tool {
   /// TA is measured from the axis, SHAPE's angle from the bottom.
   void dovetail() {
     const double lean = angle("TA");
-    const double top = d_ - 2 * geometry_.flute_mm.value_or(0) * std::tan(lean * kRadPerDeg);
+    const double top = d_ - 2 * geometry_.flute_mm.value_or(0) * portable::tan(lean * kRadPerDeg);
     // Of both, what is written counts, if they say the same.
     const bool is_same = std::abs(top - neck()) < kSameNeck_mm;
     geometry_.shape = shape_text("dovetail", {d_, 90 - lean, top > 0 && !is_same ? top : neck()});

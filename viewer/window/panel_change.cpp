@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace kerf {
 namespace {
@@ -62,6 +64,17 @@ ScreenRect drawn_rect(const ImDrawList& list, const ImDrawCmd& command, glm::ive
 
 ScreenRect with_border(const ScreenRect& rect, int border_px) {
   return {rect.min - glm::ivec2(border_px), rect.max + glm::ivec2(border_px)};
+}
+
+/// An array in Dear ImGui up to 1.89.7, a vector of its own since.
+template <class Lists>
+void put_lists(Lists& lists, std::vector<ImDrawList*>& touched) {
+  if constexpr (std::is_pointer_v<Lists>) {
+    lists = touched.data();
+  } else {
+    lists.resize(0);
+    for (ImDrawList* const list : touched) lists.push_back(list);
+  }
 }
 
 }  // namespace
@@ -155,7 +168,7 @@ void draw_panels_in(const std::vector<ScreenRect>& rects, glm::ivec2 window_px, 
   }
   // Vertices of lists that are not drawn are not sent to the card.
   ImDrawData part = *data;
-  part.CmdLists = touched.data();
+  put_lists(part.CmdLists, touched);
   part.CmdListsCount = static_cast<int>(touched.size());
   if (!touched.empty()) ImGui_ImplOpenGL3_RenderDrawData(&part);
   for (int i = 0; i < data->CmdListsCount; ++i) {

@@ -13,12 +13,16 @@
 #include <string>
 
 #include "base/translate.h"
+#include "viewer/window/glfw_library.h"
 #include "viewer/window/scene_renderer.h"
 
 namespace kerf {
 namespace {
 
 constexpr const char* kWithout = tr_noop("pictures need no display: --png FILE");
+/// A Raspberry Pi 4, for one, has 3.1.
+constexpr const char* kSoftware =
+    tr_noop("LIBGL_ALWAYS_SOFTWARE=1 before the command lets the processor draw");
 constexpr int kNeededGlVersion = 33;
 
 std::mutex wake_mutex;
@@ -182,6 +186,10 @@ Platform::~Platform() {
 }
 
 Done Platform::start() {
+  if (const Done opened = open_glfw(); !opened) {
+    return Error{trf("no window: it needs GLFW, Debian's package libglfw3 ({}); {}", opened.error(),
+                     tr(kWithout))};
+  }
   complaint().clear();
   glfwSetErrorCallback([](int, const char* text) { complaint() = text; });
   if (glfwInit() != GLFW_TRUE) {
@@ -214,15 +222,15 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   GLFWwindow* window = glfwCreateWindow(width_px, height_px, title, nullptr, nullptr);
   if (window == nullptr) {
     const std::string reason = complaint();
-    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {} ({}); {}",
-                     display_name(), found_gl(), reason, tr(kWithout))};
+    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {} ({}); {}; {}",
+                     display_name(), found_gl(), reason, tr(kSoftware), tr(kWithout))};
   }
   glfwMakeContextCurrent(window);
   if (epoxy_gl_version() < kNeededGlVersion) {
     const int found = epoxy_gl_version();
     glfwDestroyWindow(window);
-    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}",
-                     display_name(), found / 10, found % 10, tr(kWithout))};
+    return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}; {}",
+                     display_name(), found / 10, found % 10, tr(kSoftware), tr(kWithout))};
   }
   fit_on_screens(window);
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one

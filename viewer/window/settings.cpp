@@ -1,6 +1,7 @@
 #include "viewer/window/settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cstdlib>

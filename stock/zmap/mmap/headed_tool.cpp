@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "stock/zmap/cutter_components.h"
 #include "stock/zmap/path_builder.h"
 
@@ -102,7 +103,7 @@ std::vector<CutMove> head_sweeps(const CutMove& move, double radius_mm) {
   if (is_circle_in_xy(move)) {
     if (std::abs(move.to_mm.z - move.from_mm.z) < 1e-9) return {move};
     const Vec3 arm = move.from_mm - move.arc->center_mm;
-    if (std::hypot(arm.x, arm.y) >= radius_mm + kArcRadiusSlack_mm) return helix_pieces(move);
+    if (portable::hypot(arm.x, arm.y) >= radius_mm + kArcRadiusSlack_mm) return helix_pieces(move);
   }
   std::vector<CutMove> out;
   Vec3 from = move.from_mm;

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/portable_math.h"
 #include "stock/zmap/mmap/column_patch.h"
 #include "stock/zmap/tile_patch.h"
 
@@ -176,7 +177,7 @@ void Separator::pair_many(std::span<const std::pair<std::uint64_t, Side>> sides)
   std::vector<Around> around;
   for (const auto& [key, side] : sides) {
     const Vec3 w = position(to(next(side))) - position(a);
-    around.push_back({std::atan2(glm::dot(w, v), glm::dot(w, u)), from(side) != a, side});
+    around.push_back({portable::atan2(glm::dot(w, v), glm::dot(w, u)), from(side) != a, side});
   }
   std::sort(around.begin(), around.end(), [](const Around& x, const Around& y) {
     if (x.angle != y.angle) return x.angle < y.angle;

@@ -4,6 +4,7 @@
 // each connection a line "connected". An answer whose two scan counters differ is not written:
 // a line "refused" is, and it is asked for again at once.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <modbus.h>
 #include <signal.h>
 

@@ -1,5 +1,6 @@
 // Contours as lines and true arcs: against closed forms, and against the polygons.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <array>

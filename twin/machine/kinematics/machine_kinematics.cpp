@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -194,9 +195,9 @@ std::size_t axis_of(char letter) {
 
 /// Roll, pitch, yaw of Rz(c) Ry(b) Rx(a), degrees.
 std::array<double, 3> roll_pitch_yaw(const glm::dmat3& r) {
-  return {std::atan2(r[1][2], r[2][2]) * kDegPerRad,
-          std::atan2(-r[0][2], std::hypot(r[0][0], r[0][1])) * kDegPerRad,
-          std::atan2(r[0][1], r[0][0]) * kDegPerRad};
+  return {portable::atan2(r[1][2], r[2][2]) * kDegPerRad,
+          portable::atan2(-r[0][2], portable::hypot(r[0][0], r[0][1])) * kDegPerRad,
+          portable::atan2(r[0][1], r[0][0]) * kDegPerRad};
 }
 
 /// Where the module takes the tip of a tool of `tool_mm` for, X Y Z of its own.

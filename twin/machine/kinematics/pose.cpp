@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 
 namespace kerf {
@@ -13,13 +14,13 @@ double sin_deg(double degrees) {
   const double turned = std::remainder(degrees, 360.0);
   if (turned == 0.0 || std::abs(turned) == 180.0) return 0.0;
   if (std::abs(turned) == 90.0) return turned > 0 ? 1.0 : -1.0;
-  return std::sin(turned * kRadPerDeg);
+  return portable::sin(turned * kRadPerDeg);
 }
 double cos_deg(double degrees) {
   const double turned = std::abs(std::remainder(degrees, 360.0));
   if (turned == 90.0) return 0.0;
   if (turned == 180.0) return -1.0;
-  return std::cos(turned * kRadPerDeg);
+  return portable::cos(turned * kRadPerDeg);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "base/units.h"
 
@@ -122,7 +123,8 @@ void RotaryCheck::check_pole(const Motion& motion, std::vector<RotaryFault>& out
   Vec3 before = path_.spindle_at(motion, 0);
   for (int i = 1; i <= kSpindleLooks; ++i) {
     const Vec3 now = path_.spindle_at(motion, static_cast<double>(i) / kSpindleLooks);
-    spindle += std::atan2(glm::length(glm::cross(before, now)), glm::dot(before, now)) * kDegPerRad;
+    spindle +=
+        portable::atan2(glm::length(glm::cross(before, now)), glm::dot(before, now)) * kDegPerRad;
     before = now;
   }
   if (spindle >= kSingularShare * turned) return;

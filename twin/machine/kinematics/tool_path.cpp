@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "interp_bridge/motion_kinds.h"
 #include "twin/machine/kinematics/arc_bounds.h"
@@ -27,7 +28,7 @@ constexpr std::size_t kFirstTurn = 3;
 constexpr std::size_t kFirstSlide = 6;
 
 double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  return portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// Second derivative of point_at() in t.
@@ -429,7 +430,7 @@ double ToolPath::error_of(const Run& run, double t, double h, const End& from, c
     const double w = glm::length(jet.turning) * h;
     const double z = glm::dot(n, glm::normalize(jet.turning));
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    bend = std::hypot((angle2 - w * w) * r, angle2 * z);
+    bend = portable::hypot((angle2 - w * w) * r, angle2 * z);
   } else {
     const double w = bounds.turning_rad * h;
     bend = glm::length(h * h * jet.bend(spindle) + angle2 * n) + (w * w * w + angle2 * w) / 2;

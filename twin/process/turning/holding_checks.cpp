@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "interp_bridge/motion_kinds.h"
 #include "stock/turning/turned_gap.h"
 #include "stock/turning/turning_stock.h"
@@ -25,7 +26,7 @@ double boxes_apart_mm(const Box& way, const Vec2& low, const Vec2& high, const B
   const double near_r = x0 <= 0 && x1 >= 0 ? 0 : std::min(std::abs(x0), std::abs(x1));
   const double along =
       std::max({0.0, way.min.z + low.x - body.max.z, body.min.z - (way.max.z + high.x)});
-  return std::hypot(along, std::max(0.0, near_r - body.max.x));
+  return portable::hypot(along, std::max(0.0, near_r - body.max.x));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "stock/cutter/insert_shape.h"
 #include "stock/cutter/turning_shape.h"
@@ -35,7 +36,7 @@ double distance_to(const Vec2& a, const Vec2& b, const Vec2& p) {
 
 bool NoseChecks::Nose::touches(const Vec2& way_out) const {
   constexpr double kSlack_rad = 1e-6;
-  const double angle = std::atan2(-way_out.y, -way_out.x);
+  const double angle = portable::atan2(-way_out.y, -way_out.x);
   return turn_from(start_rad - kSlack_rad, angle) <= sweep_rad + 2 * kSlack_rad;
 }
 
@@ -57,8 +58,8 @@ void NoseChecks::mount(const Cutter& cutter, int tool) {
                            glm::distance(*edge.center_mm, nose.centre_mm) < kSurface_mm;
       if (is_nose) {
         const Vec2 a = from - nose.centre_mm, b = edge.end_mm - nose.centre_mm;
-        nose.start_rad = std::atan2(a.y, a.x);
-        nose.sweep_rad = turn_from(nose.start_rad, std::atan2(b.y, b.x));
+        nose.start_rad = portable::atan2(a.y, a.x);
+        nose.sweep_rad = turn_from(nose.start_rad, portable::atan2(b.y, b.x));
         nose_ = nose;
       }
       from = edge.end_mm;
@@ -98,13 +99,13 @@ void NoseChecks::note(const TurnedMove& move, const TurnCut& cut) {
     // Counter-clockwise with z to the right and x up is about +Y.
     const Vec2 centre(m.arc.center_mm.z, m.arc.center_mm.x);
     const Vec2 a = from - centre;
-    const double start = std::atan2(a.y, a.x), sweep = m.arc.axis.y * m.arc.sweep_rad;
+    const double start = portable::atan2(a.y, a.x), sweep = m.arc.axis.y * m.arc.sweep_rad;
     const double r0 = glm::length(a), r1 = glm::distance(to, centre);
     for (int i = 0; i <= kArcPlaces; ++i) {
       // Not its very ends, which what comes next may cut off.
       const double share = std::clamp(static_cast<double>(i) / kArcPlaces, 0.002, 0.998);
       const double angle = start + share * sweep, r = r0 + share * (r1 - r0);
-      const Vec2 radial(std::cos(angle), std::sin(angle));
+      const Vec2 radial(portable::cos(angle), portable::sin(angle));
       look(move, {-radial.y, radial.x}, centre + r * radial, share, worst);
     }
   }

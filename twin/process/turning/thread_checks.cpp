@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "base/translate.h"
 #include "twin/collision/tool_bodies.h"
 #include "twin/process/contact_grounds.h"
@@ -74,7 +75,7 @@ std::optional<double> flank_angle_deg(const InsertOutline& outline, bool& in_bor
   // Symmetric: its middle is square to the axis.
   if (std::abs(front->x + back->x) > 1e-3 || front->y * back->y <= 0) return std::nullopt;
   in_bore = front->y < 0;
-  return std::acos(std::clamp(glm::dot(*front, *back), -1.0, 1.0)) * 180 / kPi;
+  return portable::acos(std::clamp(glm::dot(*front, *back), -1.0, 1.0)) * 180 / kPi;
 }
 
 /// From the controlled point to where the lower of the flanks ends.
@@ -145,7 +146,7 @@ void ThreadChecks::note(const TurnedMove& move) {
   // Ways in and out slant (E and L of G76); taper threads hardly do.
   const double across = std::abs(m.to_mm.x - m.from_mm.x);
   if (across >= kMostTaper * (high - low)) return;
-  const double lead = m.feed_mm_per_min * (high - low) / std::hypot(across, high - low);
+  const double lead = m.feed_mm_per_min * (high - low) / portable::hypot(across, high - low);
   const std::optional<double> middle = middle_within(stock_.part(), low, high);
   follow_pass(m);
   if (!middle) return;  // beside the workpiece

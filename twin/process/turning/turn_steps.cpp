@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 
 TurnMove turn_part(const TurnMove& move, double a, double b) {
@@ -14,11 +16,11 @@ TurnMove turn_part(const TurnMove& move, double a, double b) {
     return part;
   }
   const Vec2 from = move.from_mm - move.arc->center_mm, to = move.to_mm - move.arc->center_mm;
-  const double start = std::atan2(from.y, from.x);
+  const double start = portable::atan2(from.y, from.x);
   const auto place = [&](double t) {
     const double angle = start + t * move.arc->sweep_rad;
     const double r = glm::length(from) + t * (glm::length(to) - glm::length(from));
-    return move.arc->center_mm + r * Vec2(std::cos(angle), std::sin(angle));
+    return move.arc->center_mm + r * Vec2(portable::cos(angle), portable::sin(angle));
   };
   if (a > 0) part.from_mm = place(a);
   if (b < 1) part.to_mm = place(b);
