@@ -76,6 +76,7 @@ constexpr std::array kRows{
     Row{Text::kMachineParts, tr_noop("Machine")},
     Row{Text::kFixtures, tr_noop("Fixtures")},
     Row{Text::kClearance, tr_noop("Clearance")},
+    Row{Text::kLoad, tr_noop("Load")},
     Row{Text::kClearanceBeyond, tr_noop("more than {}")},
     Row{Text::kLocalDrawing, tr_noop("Draw only what changes")},
     Row{Text::kPerspective, tr_noop("Persp")},

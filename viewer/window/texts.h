@@ -69,6 +69,7 @@ enum class Text {
   kMachineParts,
   kFixtures,
   kClearance,
+  kLoad,
   kClearanceBeyond,
   kLocalDrawing,
   kPerspective,
