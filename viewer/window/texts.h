@@ -94,6 +94,7 @@ enum class Text {
   kGpuMemory,
   kFramesPerSecond,
   kTextSize,
+  kLanguage,
   kDarkBackground,
   kUnits,
   kTheme,

@@ -253,11 +253,13 @@ bool Window::Impl::wants_light() {
 void Window::Impl::set_looks() {
   const float scale = display_scale_ * static_cast<float>(settings_.text_scale);
   const bool is_light = wants_light();
-  if (scale == scale_ && is_light == is_light_) return;
-  if (scale != scale_) {
+  const std::string spoken = language();
+  if (scale == scale_ && is_light == is_light_ && spoken == fonts_language_) return;
+  if (scale != scale_ || spoken != fonts_language_) {
     scale_ = scale;
+    fonts_language_ = spoken;
     // Letters are drawn for their size, not blown up.
-    fonts_ = load_fonts(scale_);
+    fonts_ = load_fonts(scale_, fonts_language_);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
