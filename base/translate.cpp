@@ -46,8 +46,7 @@ std::filesystem::path folder() {
 void leave_locale_c(const std::string& code) {
   // "de_DE", "zh_CN"
   const std::string place = contains(code, "_") ? code : code + "_" + to_upper(code);
-  for (const std::string& name :
-       {std::string(), place + ".UTF-8", std::string("en_US.UTF-8")}) {
+  for (const std::string& name : {std::string(), place + ".UTF-8", std::string("en_US.UTF-8")}) {
     const char* found = std::setlocale(LC_MESSAGES, name.c_str());
     const std::string_view in_force = found ? found : "C";
     if (in_force != "C" && in_force != "POSIX" && !in_force.starts_with("C.")) return;

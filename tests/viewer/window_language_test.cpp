@@ -37,7 +37,8 @@ std::string put_font(const TemporaryFolder& folder, const std::string& name) {
 
 TEST(Letters, AreEachThereOnceAndInOrder) {
   EXPECT_EQ(letters_in("Fräse, Größe, é, ä"), (std::vector<char16_t>{u'ß', u'ä', u'é', u'ö'}));
-  EXPECT_EQ(letters_in("进给, 刀柄 進"), (std::vector<char16_t>{u'刀', u'柄', u'给', u'进', u'進'}));
+  EXPECT_EQ(letters_in("进给, 刀柄 進"),
+            (std::vector<char16_t>{u'刀', u'柄', u'给', u'进', u'進'}));
   EXPECT_TRUE(letters_in("feed").empty());
   EXPECT_TRUE(letters_in("").empty());
 }
@@ -53,15 +54,16 @@ TEST(Letters, ArePassedOverWhereTheyAreNone) {
 
 TEST(Letters, OfEastAsiaNeedAFontOfTheirOwn) {
   for (const char16_t letter : u"进给、（カ한") {
-    if (letter != 0) EXPECT_TRUE(is_east_asian(letter)) << int{letter};
+    if (letter == 0) continue;
+    EXPECT_TRUE(is_east_asian(letter)) << int{letter};
   }
   for (const char16_t letter : u"Aéœñ¿ßЖΩ…“”→") EXPECT_FALSE(is_east_asian(letter)) << int{letter};
 }
 
 TEST(Letters, OfALanguageAreThoseOfItsCatalogue) {
   setenv("TEXTDOMAINDIR", KERF_LOCALES, 1);
-  EXPECT_FALSE(has_east_asian(letters_in(read_file(std::string(KERF_LOCALES) +
-                                                   "/fr/LC_MESSAGES/kerf.mo"))));
+  EXPECT_FALSE(
+      has_east_asian(letters_in(read_file(std::string(KERF_LOCALES) + "/fr/LC_MESSAGES/kerf.mo"))));
   const std::vector<char16_t> chinese = letters_of("zh_CN");
   for (const char16_t letter : {u'进', u'给', u'，', u'ñ'}) {  // the last one of Español
     EXPECT_TRUE(std::binary_search(chinese.begin(), chinese.end(), letter)) << int{letter};

@@ -137,9 +137,10 @@ bool can_show(const std::string& language) {
 }
 
 std::string missing_letters_text(const std::string& language) {
-  return trf("{}: no font that has its letters is installed; Debian's package fonts-noto-cjk or "
-             "fonts-wqy-zenhei has one",
-             language);
+  return trf(
+      "{}: no font that has its letters is installed; Debian's package fonts-noto-cjk or "
+      "fonts-wqy-zenhei has one",
+      language);
 }
 
 }  // namespace kerf

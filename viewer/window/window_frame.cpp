@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/translate.h"
 #include "viewer/window/desktop_theme.h"
 #include "viewer/window/window_impl.h"
 
