@@ -48,7 +48,7 @@ std::string findings_text(const FindingLog& log) {
     if (told < log.count(severity)) {
       line += trf("{}{} more", line.empty() ? "" : ", ", log.count(severity) - told);
     }
-    out += fmt::format("{:<10}{}\n", tr(word), line);
+    out += fmt::format("{:<9} {}\n", tr(word), line);
   }
   return out;
 }

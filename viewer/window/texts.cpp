@@ -105,6 +105,7 @@ constexpr std::array kRows{
     Row{Text::kGpuMemory, tr_noop("GPU memory")},
     Row{Text::kFramesPerSecond, tr_noop("frames/s")},
     Row{Text::kTextSize, tr_noop("Size")},
+    Row{Text::kLanguage, tr_noop("Language")},
     Row{Text::kDarkBackground, tr_noop("Dark background")},
     Row{Text::kUnits, tr_noop("Millimetres or inches")},
     Row{Text::kTheme, tr_noop("Theme")},

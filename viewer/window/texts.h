@@ -95,6 +95,7 @@ enum class Text {
   kGpuMemory,
   kFramesPerSecond,
   kTextSize,
+  kLanguage,
   kDarkBackground,
   kUnits,
   kTheme,
