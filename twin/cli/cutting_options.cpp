@@ -44,6 +44,14 @@ bool has_tool_limits(const SessionOptions& session) {
   return false;
 }
 
+void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
+  if (!stock.sheet()) return;
+  Diagnostic d;
+  d.severity = Severity::kWarning;
+  d.message = tr("--engagement: a sheet is cut by no milling tool; nothing is measured");
+  diagnostics.push_back(std::move(d));
+}
+
 CuttingWish understand_cutting(OptionReader& reader) {
   CuttingWish wish;
   const std::string text = reader.text("--material");

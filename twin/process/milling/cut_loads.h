@@ -17,6 +17,7 @@
 #include "twin/job/tool_loads.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/engagement.h"
+#include "twin/process/load_listener.h"
 
 namespace kerf {
 
@@ -39,7 +40,8 @@ class CutLoads {
     double rpm = 0;              ///< 0: the spindle stands
     double most_mm_per_min = 0;  ///< the speed that its motion reaches
   };
-  void take(const Part& part);
+  /// `listener`: is told what it was like; null: nobody is.
+  void take(const Part& part, LoadListener* listener = nullptr);
   /// The program is over: what is wrong.
   void finish();
   void forget();
@@ -94,6 +96,7 @@ class CutLoads {
     int tool = 0;
   };
 
+  void take_engaged(const Part& part);
   void note(Trouble trouble, const Part& part, double value, const ValueRange& range,
             double extra = 0);
   void take_air(const Part& part);
@@ -112,6 +115,7 @@ class CutLoads {
   CuttingWish wish_;
   std::vector<Tool> tools_;
   Tool* tool_ = nullptr;
+  CutLoad load_;  ///< of the present part
   double feed_s_ = 0, air_s_ = 0;
   AirWay air_;
   std::vector<AirWay> longest_air_;  ///< five at most, the longest first
