@@ -148,7 +148,7 @@ constexpr std::array kRows{
     Row{Text::kCurveBend, tr_noop("Deflection")},
     Row{Text::kCurveHigh, tr_noop("to {}")},
     Row{Text::kCurveLimit, tr_noop("limit {}")},
-    Row{Text::kCurvePeaks, tr_noop("peaks beyond {} are cut off")},
+    Row{Text::kCurvePeaks, tr_noop("99 % <= {}")},
     Row{Text::kNeedsMaterial, tr_noop("needs --material NAME")},
     Row{Text::kNeedsEngagement, tr_noop("needs --engagement or --material")},
     Row{Text::kNoStickout,
