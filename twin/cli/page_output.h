@@ -20,11 +20,11 @@ namespace kerf {
 struct PageFacts {
   std::span<const CutLabel> labels;  ///< of the workpiece's cut ids; empty: not known
   const RunCurve* curve = nullptr;   ///< null: not kept
-  const LoadCurve* loads = nullptr;  ///< null: not measured
-  CuttingWish cutting{};             ///< what loads are held against
   std::string command;               ///< that makes the report again; may be empty
   LengthUnit units = LengthUnit::kMm;
   const DesignPart* design = nullptr;  ///< that the report compares with; null: with none
+  const LoadCurve* loads = nullptr;    ///< null: not measured
+  CuttingWish cutting{};               ///< what loads are held against
 };
 
 /// The article of a run that is one of several, under its own heading (report_page.h).

@@ -254,14 +254,14 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
         kWritingPatience);
     page = {labels_in(*session),
             curve ? &*curve : nullptr,
-            loads ? &*loads : nullptr,
-            request.session.cutting,
             request.is_of_job
                 ? std::string()
                 : command_line(with_guesses(request.written,
                                             rows_in(session->report().guesses, request.units))),
             request.units,
-            compared.of_workpiece().get()};
+            compared.of_workpiece().get(),
+            loads ? &*loads : nullptr,
+            request.session.cutting};
     write_pages(request.outputs, session->report(), session->stock(), page, diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
