@@ -5,6 +5,7 @@
 // without locks. Lengths in mm in the workpiece frame, times in seconds of the program.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
@@ -67,10 +68,12 @@ struct ToolPose {
 
 enum class PathKind : std::uint32_t { kTraverse, kFeed, kPlanned };
 
-/// The segment that ends at the vertex is of its `kind`.
+/// The segment that ends at the vertex is of its `kind`, and a part of that move (CutColors).
 struct PathVertex {
+  static constexpr std::uint32_t kNoMove = (1u << 30) - 1;
   glm::vec3 position_mm{0.0f};
-  PathKind kind = PathKind::kFeed;
+  PathKind kind : 2 = PathKind::kFeed;
+  std::uint32_t move : 30 = kNoMove;
 };
 static_assert(sizeof(PathVertex) == 16);
 
@@ -173,6 +176,29 @@ struct ProgramTimeline {
   double duration_s = 0.0;  ///< 0: not known (a machine is watched).
   std::vector<ToolMark> tools;
   bool has_curves = false;  ///< ProgramCurves come: there is to be room for them.
+  /// What of CutLoadKind there may be: how tools are engaged is measured, and the material is
+  /// known.
+  bool has_loads = false, has_forces = false;
+};
+
+/// What the cuts of milling tools are like.
+enum class CutLoadKind : std::uint8_t {
+  kAngle,   ///< of the edge that is in material, degrees; beyond 180: straight down
+  kChip,    ///< its greatest thickness, mm
+  kForce,   ///< N
+  kTorque,  ///< Nm
+  kPower,   ///< kW
+  kBend,    ///< of the tool's tip, mm
+};
+inline constexpr std::size_t kCutLoadKinds = 6;
+/// The others need no material.
+inline constexpr bool needs_material(CutLoadKind kind) { return kind > CutLoadKind::kChip; }
+
+/// The greatest of each column, 0 where there is none; empty: nothing is known.
+struct SceneLoadCurve {
+  std::vector<float> nominal;
+  std::vector<float> high;  ///< End of the range that it is in.
+  double limit = 0.0;       ///< 0: none is known.
 };
 
 /// What a program does over its time, in columns of `step_s` from its start on; each vector has one
@@ -184,6 +210,7 @@ struct ProgramCurves {
   std::vector<float> feed_mm_per_min;    ///< Of feed moves.
   std::vector<float> feed_per_tooth_mm;  ///< Where material was removed; empty: no teeth are known.
   std::vector<std::uint32_t> color;      ///< Of the tool, as CutColors has it: 0xAABBGGRR.
+  std::array<SceneLoadCurve, kCutLoadKinds> loads;  ///< By CutLoadKind.
 };
 
 enum class PlayState {
@@ -212,12 +239,37 @@ struct AxisReadout {
 
 /// What the colour of the workpiece's surface says.
 enum class ColorBy {
-  kPlain,        ///< cut or not
-  kHeight,       ///< along z, from the lowest to the highest point of the blank
-  kTool,         ///< that cut there last
-  kRemovalRate,  ///< of the move that cut there last
-  kLineRange,    ///< whether lines first .. last of the program cut there last
-  kDeviation,    ///< MeshPatch::deviation_mm against a tolerance
+  kPlain,         ///< cut or not
+  kHeight,        ///< along z, from the lowest to the highest point of the blank
+  kTool,          ///< that cut there last
+  kRemovalRate,   ///< of the move that cut there last, as all down to kBend
+  kFeed,          ///< planned
+  kFeedPerTooth,  ///< of tools of known teeth
+  kAngle,         ///< from here to kBend: CutLoadKind
+  kChip,
+  kForce,
+  kTorque,
+  kPower,
+  kBend,
+  kLineRange,  ///< whether lines first .. last of the program cut there last
+  kDeviation,  ///< MeshPatch::deviation_mm against a tolerance
+};
+inline constexpr std::size_t kColorModes = 14;
+/// It goes by the moves of a program: its CutColors are for the path as well.
+inline constexpr bool is_by_move(ColorBy mode) {
+  return mode >= ColorBy::kTool && mode <= ColorBy::kLineRange;
+}
+inline constexpr std::optional<CutLoadKind> load_of(ColorBy mode) {
+  if (mode < ColorBy::kAngle || mode > ColorBy::kBend) return std::nullopt;
+  return static_cast<CutLoadKind>(static_cast<int>(mode) - static_cast<int>(ColorBy::kAngle));
+}
+
+/// What a colour of CutColors stands for, where that is a number: above `from`, up to `to`, in the
+/// unit of the mode; mm, mm/min.
+struct LegendRange {
+  enum class Kind : std::uint8_t { kWithin, kBeyondLimit, kStraightDown };
+  double from = 0.0, to = 0.0;
+  Kind kind = Kind::kWithin;
 };
 
 /// Colours as 0xAABBGGRR, the order of bytes that OpenGL's RGBA8 has.
@@ -226,13 +278,15 @@ struct ColorLegendEntry {
   std::string text;  ///< "T3 flat 10", "120 mm3/s"
   /// The text says this upper bound; a window that shows inches says it anew.
   std::optional<double> mm3_per_s = std::nullopt;
+  /// Who shows it makes the text of it.
+  std::optional<LegendRange> range = std::nullopt;
 };
 
-/// For the modes that go by MeshPatch::cut_by (all from kTool to kLineRange): a colour for each
-/// move.
+/// For the modes that go by MeshPatch::cut_by (is_by_move()): a colour for each move.
 struct CutColors {
   ColorBy mode = ColorBy::kTool;
   std::vector<std::uint32_t> of_move;  ///< by the number of the move; those beyond are `other`
+  bool is_of_path = false;             ///< by PathVertex::move as well
   std::uint32_t other = 0xff9a9a9a;
   std::uint32_t not_cut = 0xffb8b0a8;
   std::vector<ColorLegendEntry> legend;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -213,8 +214,10 @@ MeshPatch squares(const std::vector<std::uint32_t>& moves) {
   return patch;
 }
 
-SceneUpdate colors_update(ColorBy mode, std::vector<std::uint32_t> of_move) {
+SceneUpdate colors_update(ColorBy mode, std::vector<std::uint32_t> of_move,
+                          bool is_of_path = false) {
   CutColors colors;
+  colors.is_of_path = is_of_path;
   colors.mode = mode;
   colors.of_move = std::move(of_move);
   colors.other = 0xff00ffff;    // yellow
@@ -267,6 +270,96 @@ TEST_F(SurfaceColorsTest, AreThoseOfTheMoves) {
   }
   ASSERT_EQ(scene.legend().size(), 1u);
   EXPECT_EQ(scene.legend()[0].text, "T1 flat 10");
+}
+
+/// Two feeds of moves 0 and 1 above six squares that move 0 has cut, and a traverse.
+TEST_F(SurfaceColorsTest, AreThoseOfThePathWhereThatIsWanted) {
+  const std::vector<PathVertex> path{{{0, 5, 1}, PathKind::kTraverse, 0},
+                                     {{30, 5, 1}, PathKind::kFeed, 0},
+                                     {{60, 5, 1}, PathKind::kFeed, 1},
+                                     {{60, 25, 1}, PathKind::kTraverse, 1}};
+  SceneRenderer scene = renderer();
+  SceneUpdate update = update_of(squares({2, 2, 2, 2, 2, 2}), {Vec3(0, 0, -5), Vec3(60, 30, 1)});
+  update.path = path_chunks(path);
+  scene.apply(update);
+  scene.apply(moment_update(Vec3(500, 500, 500), path.size()));
+  Projection projection = top_view(scene);
+  DrawOptions options = everything_;
+  options.color_by = ColorBy::kTool;
+  draw(&scene, projection, options);
+  const Picture plain = scene.read();
+  const auto tones_near = [&](const Picture& picture, const Vec3& point) {
+    std::set<Tone> tones;
+    const glm::ivec2 middle = pixel_of(projection, point);
+    for (int y = -2; y <= 2; ++y) tones.insert(tone_of(at(picture, {middle.x, middle.y + y})));
+    return tones;
+  };
+  const Vec3 first(15, 5, 1), second(45, 5, 1), beside(15, 9, 0), traverse(60, 20, 1);
+  // Colours of whoever has no numbers for the path are for the surface alone.
+  options.color_on = ColorTarget::kPath;
+  scene.apply(colors_update(ColorBy::kTool, {0xff0000ff, 0xff00ff00, 0xffff0000}));
+  draw(&scene, projection, options);
+  EXPECT_FALSE(tones_near(scene.read(), first).contains(Tone::kRed));
+  for (const float line_px : {1.0f, 3.0f}) {  // OpenGL's own lines, and wide ones
+    projection.line_px = line_px;
+    scene.apply(colors_update(ColorBy::kTool, {0xff0000ff, 0xff00ff00, 0xffff0000}, true));
+    for (const ColorTarget target :
+         {ColorTarget::kSurface, ColorTarget::kBoth, ColorTarget::kPath}) {
+      options.color_on = target;
+      draw(&scene, projection, options);
+      const Picture picture = scene.read();
+      const bool has_path = target != ColorTarget::kSurface;
+      const Tone surface = target == ColorTarget::kPath ? Tone::kGrey : Tone::kBlue;
+      EXPECT_EQ(tones_near(picture, first).contains(Tone::kRed), has_path) << line_px;
+      EXPECT_EQ(tones_near(picture, second).contains(Tone::kGreen), has_path) << line_px;
+      EXPECT_EQ(tone_of(at(picture, pixel_of(projection, beside))), surface) << line_px;
+      EXPECT_EQ(scene.legend().size(), 1u);
+    }
+  }
+  // What is still to come is paler; the tail of the path is coloured as well.
+  projection.line_px = 1.0f;
+  scene.apply(moment_update(Vec3(500, 500, 500), 0));
+  draw(&scene, projection, options);
+  EXPECT_FALSE(tones_near(scene.read(), first).contains(Tone::kBlue));
+  EXPECT_GT(differing_pixels(plain, scene.read()), 20);
+  scene.apply(moment_update(Vec3(500, 500, 500), path.size()));
+  options.path_tail = 3;
+  draw(&scene, projection, options);
+  EXPECT_TRUE(tones_near(scene.read(), second).contains(Tone::kGreen));
+}
+
+/// A straight path of many moves would be drawn as one line.
+TEST_F(SurfaceColorsTest, OfAStraightPathNoMoveIsLeftOut) {
+  std::vector<PathVertex> path{{{0, 5, 1}, PathKind::kTraverse, 0}};
+  for (std::uint32_t i = 1; i <= 2 * kPathChunkSegments; ++i) {
+    const float x = 60.0f * static_cast<float>(i) / (2 * kPathChunkSegments);
+    path.push_back({{x, 5, 1}, PathKind::kFeed, i / 512 % 2});
+  }
+  SceneRenderer scene = renderer();
+  SceneUpdate update = update_of(squares({2, 2, 2, 2, 2, 2}), {Vec3(0, 0, -5), Vec3(60, 30, 1)});
+  update.path = path_chunks(path);
+  scene.apply(update);
+  scene.apply(moment_update(Vec3(500, 500, 500), path.size()));
+  scene.apply(colors_update(ColorBy::kTool, {0xff0000ff, 0xff00ff00, 0xffff0000}, true));
+  const Projection projection = top_view(scene);
+  DrawOptions options = everything_;
+  options.color_by = ColorBy::kTool;
+  options.color_on = ColorTarget::kPath;
+  draw(&scene, projection, options);
+  const Picture picture = scene.read();
+  int changes = 0;
+  std::optional<Tone> before;
+  for (double x = 1; x < 59; x += 0.1) {
+    const glm::ivec2 middle = pixel_of(projection, Vec3(x, 5, 1));
+    for (int y = -1; y <= 1; ++y) {
+      const Tone tone = tone_of(at(picture, {middle.x, middle.y + y}));
+      if (tone != Tone::kRed && tone != Tone::kGreen) continue;
+      changes += before && *before != tone ? 1 : 0;
+      before = tone;
+      break;
+    }
+  }
+  EXPECT_EQ(changes, 15) << "each 512 of 8192 moves another colour";
 }
 
 TEST_F(SurfaceColorsTest, ATriangleHasOneColorEvenBetweenMoves) {

@@ -1,5 +1,7 @@
 // The curve below the time slider.
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "tests/viewer/window_fixture.h"
 
@@ -66,6 +68,76 @@ TEST_F(WindowCurveTest, IsChosenWithAKeyAndTakesNoRoomWhereThereIsNone) {
   ASSERT_TRUE(turn_until([&] { return pixels(kStrip) > 1000; }));
   settle();
   EXPECT_GT(mean_difference(none, window_->read(), {0, 690, kWidth, 745}), 1.0);
+}
+
+TEST_F(WindowCurveTest, LoadsComeAfterFeedsWhereTheyAreMeasured) {
+  open();
+  SceneUpdate update;
+  auto timeline = std::make_shared<ProgramTimeline>();
+  timeline->duration_s = kDuration_s;
+  timeline->has_curves = timeline->has_loads = timeline->has_forces = true;
+  update.timeline = timeline;
+  auto curves = std::make_shared<ProgramCurves>();
+  curves->step_s = kDuration_s / 500;
+  curves->known_until_s = kDuration_s;
+  curves->mm3_per_s.assign(500, 1.0f);
+  curves->feed_mm_per_min.assign(500, 600.0f);
+  curves->color.assign(500, 0xff3c3cf0u);
+  SceneLoadCurve& power = curves->loads[static_cast<std::size_t>(CutLoadKind::kPower)];
+  power.nominal.assign(500, 1.0f);
+  power.nominal[250] = 90.0f;  // for a moment
+  power.high.assign(500, 1.5f);
+  power.high[250] = 95.0f;
+  power.limit = 1.2;
+  update.curves = curves;
+  mailbox_.publish(std::move(update));
+  ASSERT_TRUE(turn_until([&] { return pixels(kStrip) > 1000; }));
+  constexpr Rgb kLimit{235, 165, 50}, kPeak{240, 90, 110};
+  const auto has = [&](const Rgb& color) {
+    return count_pixels(window_->read(), kStrip, color) > 0;
+  };
+  EXPECT_FALSE(has(kLimit)) << "the rate has none";
+  for (int presses = 0; presses < 6;
+       ++presses) {  // feed, per tooth, engagement, chip, force, torque
+    key("y");
+    settle();
+  }
+  EXPECT_EQ(pixels(kStrip), 0) << "nothing is known of torques";
+  key("y");
+  ASSERT_TRUE(turn_until([&] { return pixels(kStrip) > 1000; })) << "the peak has not flattened it";
+  EXPECT_TRUE(has(kLimit));
+  EXPECT_TRUE(has(kPeak));
+}
+
+/// Colours that need a material are offered where there is one, and by the key in the same order.
+TEST_F(WindowCurveTest, ColoursOfLoadsAreOfferedWithTheirCurves) {
+  open_with_curve();
+  const auto modes_of_key = [&] {
+    std::vector<ColorBy> modes;
+    for (int presses = 0; presses < 14; ++presses) {
+      commands_.take();
+      key("v");
+      settle();
+      const std::optional<ColorCommand> command = next<ColorCommand>();
+      if (!command) break;
+      modes.push_back(command->mode);
+      if (command->mode == ColorBy::kPlain) break;
+    }
+    return modes;
+  };
+  EXPECT_EQ(modes_of_key(),
+            (std::vector{ColorBy::kHeight, ColorBy::kTool, ColorBy::kRemovalRate, ColorBy::kFeed,
+                         ColorBy::kFeedPerTooth, ColorBy::kLineRange, ColorBy::kPlain}));
+  SceneUpdate update;
+  auto timeline = std::make_shared<ProgramTimeline>();
+  timeline->duration_s = kDuration_s;
+  timeline->has_curves = timeline->has_loads = true;
+  update.timeline = timeline;
+  mailbox_.publish(std::move(update));
+  settle();
+  EXPECT_EQ(modes_of_key(), (std::vector{ColorBy::kHeight, ColorBy::kTool, ColorBy::kRemovalRate,
+                                         ColorBy::kFeed, ColorBy::kFeedPerTooth, ColorBy::kAngle,
+                                         ColorBy::kChip, ColorBy::kLineRange, ColorBy::kPlain}));
 }
 
 TEST_F(WindowCurveTest, BesideAMachineThereIsNone) {

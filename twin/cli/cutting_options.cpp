@@ -61,6 +61,14 @@ CuttingWish understand_spindle_load(OptionReader& reader) {
   return wish;
 }
 
+void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
+  if (!stock.sheet()) return;
+  Diagnostic d;
+  d.severity = Severity::kWarning;
+  d.message = tr("--engagement: a sheet is cut by no milling tool; nothing is measured");
+  diagnostics.push_back(std::move(d));
+}
+
 CuttingWish understand_cutting(OptionReader& reader) {
   CuttingWish wish;
   const std::string text = reader.text("--material");

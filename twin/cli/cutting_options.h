@@ -17,4 +17,7 @@ CuttingWish understand_spindle_load(OptionReader& reader);
 /// Some tool says what its maker allows, which its engagement is held against.
 bool has_tool_limits(const SessionOptions& session);
 
+/// How tools are engaged is to be measured, and there is no milling tool: a warning.
+void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics);
+
 }  // namespace kerf

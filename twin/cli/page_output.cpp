@@ -11,6 +11,7 @@
 #include "twin/page/page_printer.h"
 #include "twin/page/report_page.h"
 #include "twin/scene/cut_colors.h"
+#include "twin/scene/value_colors.h"
 #include "viewer/deviation_colors.h"
 
 namespace kerf {
@@ -39,8 +40,32 @@ PageCurves curves_of(const RunCurve& curve) {
     out.removed_mm3_per_s.push_back(column.removed_mm3 / curve.step_s());
     out.feed_mm_per_min.push_back(column.feed_s > 0 ? 60 * column.feed_mm / column.feed_s : 0);
     out.spindle_rpm.push_back(60 * column.turns / curve.step_s());
+    PageSpot& spot = out.spots.emplace_back();
+    if (column.motion_s > 0) spot = {column.source, column.at_mm};
   }
   return out;
+}
+
+/// In the columns of the others, which are no finer.
+void add_loads(const LoadCurve& found, const CuttingWish& wish, PageCurves& curves) {
+  const std::size_t count = curves.removed_mm3_per_s.size();
+  for (std::size_t k = 0; k < kLoadKinds; ++k) {
+    const auto kind = static_cast<LoadKind>(k);
+    const auto nominal = found.nominal(kind), high = found.high(kind);
+    if (nominal.empty() || count == 0) continue;
+    PageCurves::Load& load = curves.loads.emplace_back();
+    load.kind = kind;
+    load.step_s = curves.step_s;
+    load.limit = limit_of(static_cast<CutLoadKind>(k), wish);
+    load.nominal.resize(count);
+    if (needs_material(static_cast<CutLoadKind>(k))) load.high.resize(count);
+    for (std::size_t i = 0; i < nominal.size(); ++i) {
+      const double begin_s = static_cast<double>(i) * found.step_s();
+      const auto at = std::min(count - 1, static_cast<std::size_t>(begin_s / curves.step_s + 1e-9));
+      load.nominal[at] = std::max(load.nominal[at], static_cast<double>(nominal[i]));
+      if (!load.high.empty()) load.high[at] = std::max(load.high[at], static_cast<double>(high[i]));
+    }
+  }
 }
 
 void note(const Done& done, Diagnostics& diagnostics) {
@@ -56,6 +81,7 @@ PageOptions options_of(const Report& report, const PageFacts& facts) {
   options.units = facts.units;
   options.command = facts.command;
   if (facts.curve) options.curves = curves_of(*facts.curve);
+  if (facts.curve && facts.loads) add_loads(*facts.loads, facts.cutting, options.curves);
   // By number, as cuts are: of one with several shapes all are named.
   std::vector<int> numbers;
   for (const ToolUse& use : report.tools) {

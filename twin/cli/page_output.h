@@ -9,6 +9,8 @@
 #include "stock/stock_model.h"
 #include "twin/cli/outputs.h"
 #include "twin/process/cut_labels.h"
+#include "twin/process/cutting_wish.h"
+#include "twin/process/load_curve.h"
 #include "twin/process/run_curve.h"
 #include "twin/report/report.h"
 
@@ -21,6 +23,8 @@ struct PageFacts {
   std::string command;               ///< that makes the report again; may be empty
   LengthUnit units = LengthUnit::kMm;
   const DesignPart* design = nullptr;  ///< that the report compares with; null: with none
+  const LoadCurve* loads = nullptr;    ///< null: not measured
+  CuttingWish cutting{};               ///< what loads are held against
 };
 
 /// The article of a run that is one of several, under its own heading (report_page.h).

@@ -21,6 +21,7 @@
 #include "interp_bridge/private_folder.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/page_output.h"
@@ -31,6 +32,7 @@
 #include "twin/cli/torch_options.h"
 #include "twin/cli/view_command.h"
 #include "twin/cli/window_host.h"
+#include "twin/process/load_curve.h"
 #include "twin/process/run_curve.h"
 #include "twin/program/session_parts.h"
 #include "twin/report/motion_table.h"
@@ -168,15 +170,6 @@ std::unique_ptr<MotionTable> begin_table(const RunRequest& request, const StdinP
   return std::move(begun.value());
 }
 
-/// Where there is none to be measured.
-void doubt_engagement(const StockModel& stock, Diagnostics& diagnostics) {
-  if (!stock.sheet()) return;
-  Diagnostic d;
-  d.severity = Severity::kWarning;
-  d.message = tr("--engagement: a sheet is cut by no milling tool; nothing is measured");
-  diagnostics.push_back(std::move(d));
-}
-
 std::span<const CutLabel> labels_in(const Session& session) {
   return session.cut_labels() ? session.cut_labels()->all() : std::span<const CutLabel>();
 }
@@ -248,9 +241,11 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   if (session && request.engagement)
     session->log_engagement(!request.outputs.engagement_png.empty());
   std::optional<RunCurve> curve;
+  std::optional<LoadCurve> loads;
   if (session && (request.outputs.wants_page() || request.keeps_page)) {
     session->keep_cut_labels();
     session->record_by(curve.emplace());
+    if (request.engagement) session->hear_loads(loads.emplace());
   }
   print(diagnostics);
   if (!session) {
@@ -283,12 +278,16 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
-    page = {labels_in(*session), curve ? &*curve : nullptr,
+    page = {labels_in(*session),
+            curve ? &*curve : nullptr,
             request.is_of_job
                 ? std::string()
                 : command_line(with_guesses(request.written,
                                             rows_in(session->report().guesses, request.units))),
-            request.units, compared.of_workpiece().get()};
+            request.units,
+            compared.of_workpiece().get(),
+            loads ? &*loads : nullptr,
+            request.session.cutting};
     write_pages(request.outputs, session->report(), session->stock(), page, diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);

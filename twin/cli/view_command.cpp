@@ -59,6 +59,8 @@ int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
   options.is_local = request.local;
   options.draw_mode = request.window_mode;
   options.section = request.frame.section;
+  options.color_by = request.color_by;
+  options.color_on = request.color_on;
   if (request.run.units != LengthUnit::kMm) options.units = request.run.units;
   const auto replay = [&](const Arguments& log, std::function<void()> on_start) {
     Arguments live = replay_arguments(log);
@@ -133,6 +135,7 @@ int into_files(const ViewRequest& request, ViewKind kind, const std::stop_source
     return kExitUsage;
   }
   if (!request.png.empty()) {
+    renderer->color(player);
     const Result<Picture> picture = renderer->draw(player.state());
     done = picture ? write_png(request.png, *picture) : Done(Error{picture.error()});
   } else {
@@ -153,7 +156,10 @@ int into_files(const ViewRequest& request, ViewKind kind, const std::stop_source
 
 int view_log(const Arguments& arguments) {
   Diagnostics diagnostics;
-  for (const char* const option : {"--at-line", "--until-line", "--keyframes", "--full-redraw"}) {
+  for (const char* const option :
+       {"--at-line", "--until-line", "--keyframes", "--full-redraw", "--material", "--engagement",
+        "--climb", "--spindle-power", "--spindle-torque", "--max-deflection", "--color",
+        "--color-on"}) {
     if (arguments.options.has(option)) {
       add_fault(option, tr("is for programs, not for logs"), {}, diagnostics);
     }
@@ -172,7 +178,7 @@ Arguments again_in_window(Arguments arguments) {
   WrittenOptions& options = arguments.options;
   for (const auto& [output, path] : OutputPaths{}.named()) options.clear(output);
   for (const char* const option :
-       {"--mesh-tolerance", "--view", "--verbose", "--finding-png", "--rest", "--engagement"}) {
+       {"--mesh-tolerance", "--view", "--verbose", "--finding-png", "--rest"}) {
     options.clear(option);
   }
   options.set_flag("--quiet");

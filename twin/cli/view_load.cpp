@@ -13,6 +13,7 @@
 #include "base/translate.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/report/guess_row.h"
 
 namespace kerf {
@@ -66,7 +67,10 @@ std::unique_ptr<LoadedProgram> load_viewed(const ViewRequest& request, ViewKind 
   if (kind == ViewKind::kProgram) {
     auto loaded = load_program(request.run.session, control, diagnostics, outcome);
     // Who cut where is what colours and the difference between cut and uncut are made of.
-    if (loaded && loaded->player.blank) loaded->player.blank->keep_cut_ids(true);
+    if (!loaded || !loaded->player.blank) return loaded;
+    loaded->player.blank->keep_cut_ids(true);
+    loaded->player.measures_loads = request.run.engagement && !loaded->player.blank->sheet();
+    if (request.run.engagement) doubt_engagement(*loaded->player.blank, diagnostics);
     return loaded;
   }
   const std::string& path = request.run.session.program.path;

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/outputs.h"
@@ -63,6 +65,7 @@ void read_pictures(OptionReader& reader, ViewRequest& request) {
     reader.fault("--speed", tr("is for the window and for --frames; a picture stands still"));
   }
   request.frame.draw.is_local = false;
+  request.frame.units = request.run.units;
   reader.word(
       "--view",
       {StandardView::kIsometric, StandardView::kTop, StandardView::kBottom, StandardView::kFront,
@@ -95,6 +98,41 @@ void read_mode(OptionReader& reader, ViewRequest& request) {
   }
 }
 
+/// What a colour needs to be known.
+void check_color(OptionReader& reader, const ViewRequest& request) {
+  const auto load = load_of(*request.color_by);
+  const std::string name = reader.text("--color");
+  if (load && needs_material(*load) && !request.run.session.cutting.material)
+    reader.fault("--color", trf("{} is worked out of the material, which nobody has said", name),
+                 tr("--material NAME says it; docs/cutting-forces.md lists them"));
+  else if (load && !request.run.engagement)
+    reader.fault("--color", trf("{} is not measured", name),
+                 tr("--engagement or --material NAME measures it"));
+  if (request.compare.is_wanted())
+    reader.fault("--color", tr("--compare has colours of its own: deviations"));
+}
+
+void read_colors(OptionReader& reader, ViewRequest& request) {
+  constexpr std::array kColors{ColorBy::kPlain,       ColorBy::kHeight, ColorBy::kTool,
+                               ColorBy::kRemovalRate, ColorBy::kFeed,   ColorBy::kFeedPerTooth,
+                               ColorBy::kAngle,       ColorBy::kChip,   ColorBy::kForce,
+                               ColorBy::kTorque,      ColorBy::kPower,  ColorBy::kBend};
+  const int color = reader.word("--color");
+  if (color >= 0) {
+    request.color_by = kColors[static_cast<std::size_t>(color)];
+    check_color(reader, request);
+    request.frame.draw.color_by = *request.color_by;
+    if (request.frame.draw_mode != DrawMode::kMesh && *request.color_by != ColorBy::kPlain)
+      reader.fault("--color", trf("{} shows no colours; --draw mesh does", reader.text("--draw")));
+  }
+  const int target = reader.word("--color-on");
+  if (target < 0) return;
+  request.color_on = static_cast<ColorTarget>(target);
+  request.frame.draw.color_on = *request.color_on;
+  if (!request.wants_window() && !(request.color_by && is_by_move(*request.color_by)))
+    reader.fault("--color-on", tr("is about colours that go by moves: --color tool, force .."));
+}
+
 std::optional<double> read_speed(OptionReader& reader) {
   const ChosenValue speed = reader.choose("--speed");
   if (!speed.is_said()) return std::nullopt;
@@ -110,6 +148,10 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
   const LiveConfig* const config = read ? &*read : nullptr;
   OptionReader reader(diagnostics, layers_of(arguments, config));
   request.run = understand_cut(config, reader);
+  request.run.session.cutting = understand_cutting(reader);
+  request.run.engagement = reader.is_yes("--engagement") ||
+                           request.run.session.cutting.is_wanted() ||
+                           has_tool_limits(request.run.session);
   request.written = arguments;
   request.speed = read_speed(reader);
   request.at_line = static_cast<std::uint32_t>(reader.whole_number("--at-line"));
@@ -125,6 +167,7 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
   }
   read_comparison(reader, request);
   read_mode(reader, request);
+  read_colors(reader, request);
   read_section(reader, request);
   const std::optional<Blank>& blank = request.run.session.blank;
   // The window says so itself, and draws by mesh.

@@ -24,9 +24,11 @@ struct ViewRequest {
   std::uint32_t at_line = 0;    ///< shown first; 0: the beginning (of a picture: the end)
   PlayerOptions player;
   std::string png;
-  FilmOptions film;                          ///< no folder: none is wanted
-  FrameOptions frame;                        ///< for files
-  std::optional<DrawMode> window_mode;       ///< none: as the window remembers it
+  FilmOptions film;                     ///< no folder: none is wanted
+  FrameOptions frame;                   ///< for files
+  std::optional<DrawMode> window_mode;  ///< none: as the window remembers it, as the next two
+  std::optional<ColorBy> color_by;
+  std::optional<ColorTarget> color_on;
   CompareRequest compare;                    ///< the design part
   std::shared_ptr<const DesignPart> design;  ///< read by the command, not here
   bool local = true;                         ///< the window redraws only where something changed

@@ -85,6 +85,23 @@ constexpr std::array kViewSettings{
             .help = tr_noop(
                 "of pictures: iso | top | bottom | front | back | left | right (default {})"),
             .value_name = "NAME"},
+    Setting{.option = "--color",
+            .commands = kView,
+            .type = T::kWord,
+            .words = "plain|height|tool|removal-rate|feed|feed-per-tooth|engagement|chip|force|"
+                     "torque|power|deflection",
+            .help = tr_noop("colours: plain | height | tool | removal-rate | feed | "
+                            "feed-per-tooth | engagement | chip | force | torque | power | "
+                            "deflection, of the move that cut there last (default plain, or as "
+                            "the window has it)"),
+            .value_name = "NAME"},
+    Setting{.option = "--color-on",
+            .commands = kView,
+            .type = T::kWord,
+            .words = "surface|both|path",
+            .help = tr_noop("what has colours that go by moves: surface | both | path (default "
+                            "surface, or as the window has it)"),
+            .value_name = "NAME"},
     Setting{.option = "--section",
             .commands = kRun | kJob,
             .type = T::kWord,

@@ -5,7 +5,7 @@
 
 namespace kerf {
 
-void LoadSpread::add(double value, double seconds, const SourceRef& source) {
+void LoadSpread::add(double value, double seconds, const SourceRef& source, const Vec3& at_mm) {
   if (!(value >= 0) || !(seconds > 0)) return;
   static const double kScale = kBins / std::log(kMost / kLeast);
   const double bin = value > kLeast ? std::log(value / kLeast) * kScale : 0;
@@ -14,6 +14,7 @@ void LoadSpread::add(double value, double seconds, const SourceRef& source) {
   if (value <= most_) return;
   most_ = value;
   most_at_ = source;
+  most_mm_ = at_mm;
 }
 
 double LoadSpread::not_above(double share) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "base/geometry.h"
 #include "cutting/material.h"
 #include "interp_bridge/motion.h"
 
@@ -12,15 +13,18 @@ namespace kerf {
 /// Of one quantity over the time of a tool's cuts.
 class LoadSpread {
  public:
-  void add(double value, double seconds, const SourceRef& source);
+  /// `at_mm`: where, in the workpiece.
+  void add(double value, double seconds, const SourceRef& source, const Vec3& at_mm = Vec3(0));
   /// By its nominal value; `most` becomes the greatest.
-  void add(const ValueRange& range, double seconds, const SourceRef& source, ValueRange& most) {
+  void add(const ValueRange& range, double seconds, const SourceRef& source, ValueRange& most,
+           const Vec3& at_mm = Vec3(0)) {
     if (range.nominal > most_) most = range;
-    add(range.nominal, seconds, source);
+    add(range.nominal, seconds, source, at_mm);
   }
 
   double most() const { return most_; }
   const SourceRef& most_at() const { return most_at_; }
+  const Vec3& most_mm() const { return most_mm_; }
   double seconds() const { return seconds_; }
   /// What it was not above for this share of the time, to 1.5 %; 0 of nothing.
   double not_above(double share) const;
@@ -32,6 +36,7 @@ class LoadSpread {
   std::array<double, kBins> seconds_in_{};
   double most_ = 0, seconds_ = 0;
   SourceRef most_at_;
+  Vec3 most_mm_{0};
 };
 
 /// Where teeth are known; from force_n on of a known material. Of ranges the nominal values are

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "twin/job/load_text.h"
 #include "twin/page/page_curve.h"
 #include "twin/page/section_text.h"
 #include "twin/report/compare_report.h"
@@ -163,6 +164,9 @@ std::string tool_section(const Report& report, LengthUnit units) {
                                    {tr("Deepest"), true},
                                    {tr("Peak rate"), true}})
     columns.push_back(column);
+  const bool has_teeth =
+      std::ranges::any_of(report.tools, [](const ToolUse& use) { return use.chip.is_known(); });
+  if (has_teeth) columns.push_back({tr("Feed per tooth, mean / most"), true});
   out.table(columns);
   for (const ToolUse& use : report.tools) {
     const bool is_known = !use.shape.empty();
@@ -176,6 +180,11 @@ std::string tool_section(const Report& report, LengthUnit units) {
                       volume_text(use.removed_mm3), fmt::format("{:.2f} mm", use.max_depth_mm),
                       fmt::format("{:.1f} mm3/s", use.peak_mm3_per_s)})
         cells.push_back(std::move(cell));
+      if (has_teeth)
+        cells.push_back(use.chip.is_known()
+                            ? fmt::format("{} mm / {} mm", load_text(use.chip.mean_mm()),
+                                          load_text(use.chip.most_mm))
+                            : std::string());
     }
     out.row(cells);
   }
@@ -221,6 +230,33 @@ std::string part_section(const Report& report, LengthUnit units) {
   return std::move(out).done();
 }
 
+namespace {
+
+std::string load_svg(const PageCurves::Load& load, LengthUnit units) {
+  struct Look {
+    const char* title;
+    const char* unit;
+    const char* color;
+    bool is_length = false;
+  };
+  const std::array<Look, kLoadKinds> looks{{{tr("Engagement"), "°", "#4b5c8a"},
+                                            {tr("Chip thickness"), "mm", "#7a4b8a", true},
+                                            {tr("Force"), "N", "#8a4b3c"},
+                                            {tr("Torque, mean of a turn"), "Nm", "#3c7a6f"},
+                                            {tr("Power"), "kW", "#6b6a1f"},
+                                            {tr("Deflection"), "mm", "#5d5d66", true}}};
+  const Look& look = looks[static_cast<std::size_t>(load.kind)];
+  const bool in_inches = look.is_length && units == LengthUnit::kInch;
+  const double factor = in_inches ? from_mm(1, units) : 1;
+  std::vector<double> nominal(load.nominal), high(load.high);
+  for (double& value : nominal) value *= factor;
+  for (double& value : high) value *= factor;
+  return curve_svg({look.title, in_inches ? name_of(units) : look.unit, look.color, load.step_s,
+                    nominal, high, load.limit * factor});
+}
+
+}  // namespace
+
 std::string curve_section(const PageCurves& curves, LengthUnit units) {
   const bool inch = units == LengthUnit::kInch;
   constexpr double kInch_mm = 25.4;
@@ -238,6 +274,9 @@ std::string curve_section(const PageCurves& curves, LengthUnit units) {
   out.raw(curve_svg(
       {tr("Speed of feed moves"), inch ? "in/min" : "mm/min", "#1d7a46", curves.step_s, feeds}));
   out.raw(curve_svg({tr("Spindle"), tr("rpm"), "#9a5b00", curves.step_s, curves.spindle_rpm}));
+  for (const PageCurves::Load& load : curves.loads) out.raw(load_svg(load, units));
+  if (!curves.spots.empty())
+    out.paragraph(tr("A click on a curve shows the line that was run then, and its place."));
   return std::move(out).done();
 }
 

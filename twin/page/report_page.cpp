@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -13,6 +14,7 @@
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
 #include "twin/page/base64.h"
+#include "twin/page/load_section.h"
 #include "twin/page/page_assets.h"
 #include "twin/page/page_mesh.h"
 #include "twin/page/page_sections.h"
@@ -90,17 +92,44 @@ Json places_json(const Report& report) {
   return out;
 }
 
-/// The lines that findings name, and their neighbours: by file, by number.
-Json sources_json(const Report& report) {
+std::string file_of(const Report& report, const SourceRef& source) {
+  const auto& files = report.program.files;
+  return source.file < files.size() ? files[source.file] : std::string();
+}
+
+/// [file, line, place], the files by their place in "files".
+Json spots_json(const std::vector<PageSpot>& spots) {
+  Json out = Json::array();
+  for (const PageSpot& spot : spots) {
+    Json place = nullptr;
+    if (spot.place_mm) {
+      place = Json::array();
+      // A page has thousands of them; nobody sees a micrometre.
+      for (int axis = 0; axis < 3; ++axis)
+        place.push_back(std::round(1000 * (*spot.place_mm)[axis]) / 1000);
+    }
+    out.push_back(Json::array({spot.source.file, spot.source.line, std::move(place)}));
+  }
+  return out;
+}
+
+/// The lines that findings and `spots` name, and their neighbours, and those of `columns` alone: by
+/// file, by number.
+Json sources_json(const Report& report, const std::vector<PageSpot>& spots,
+                  const std::vector<PageSpot>& columns) {
   std::map<std::string, std::set<std::uint32_t>> wanted;
+  const auto want = [&](const std::string& file, std::uint32_t line, std::uint32_t around) {
+    if (line == 0 || file.empty()) return;
+    for (std::uint32_t n = line > around ? line - around : 1; n <= line + around; ++n)
+      wanted[file].insert(n);
+  };
+  for (const PageSpot& spot : spots)
+    want(file_of(report, spot.source), spot.source.line, kNeighbours);
+  for (const PageSpot& spot : columns) want(file_of(report, spot.source), spot.source.line, 0);
   const auto& kept = report.findings.kept();
   for (std::size_t i = 0; i < std::min(kept.size(), kMostOnPage); ++i) {
     const Diagnostic d = diagnostic_of(kept[i], report.program.files);
-    const auto line = static_cast<std::uint32_t>(d.line);
-    if (line == 0 || d.file.empty()) continue;
-    for (std::uint32_t n = line > kNeighbours ? line - kNeighbours : 1; n <= line + kNeighbours;
-         ++n)
-      wanted[d.file].insert(n);
+    want(d.file, static_cast<std::uint32_t>(d.line), kNeighbours);
   }
   Json out = Json::object();
   for (const auto& [file, lines] : wanted) {
@@ -205,7 +234,7 @@ std::string page_article(const Report& report, const StockModel* stock,
   Json data;
   data["inch"] = options.units == LengthUnit::kInch;
   data["findings"] = places_json(report);
-  data["sources"] = sources_json(report);
+  data["files"] = report.program.files;
   data["texts"] = {{"view", tr("the part in 3D")},
                    {"uncut", tr("not cut")},
                    {"none", tr("This browser has no WebGL: the part is not drawn.")}};
@@ -232,11 +261,16 @@ std::string page_article(const Report& report, const StockModel* stock,
       finding_list(report, options.units) + "<pre class=\"program\"></pre></div></div></section>\n";
   out += setup_section(report, options, has_view);
   out += tool_section(report, options.units);
+  PageSpots spots;
+  out += load_section(report, options.units, spots);
   out += collision_section(report, options.units);
   out += compare_section(report, options.units);
   out += part_section(report, options.units);
   out += curve_section(options.curves, options.units);
   out += exactness_section(report, options, mesh_text(mesh));
+  data["sources"] = sources_json(report, spots.all(), options.curves.spots);
+  data["spots"] = spots_json(spots.all());
+  data["columns"] = spots_json(options.curves.spots);
   out +=
       fmt::format("<script class=\"kerf-data\" type=\"application/json\">{}</script>\n</article>\n",
                   embedded(data));

@@ -11,6 +11,8 @@
 #include "base/length_unit.h"
 #include "stock/stock_model.h"
 #include "twin/page/page_mesh.h"
+#include "twin/page/page_spots.h"
+#include "twin/process/load_listener.h"
 #include "twin/report/report.h"
 
 namespace kerf {
@@ -21,6 +23,17 @@ struct PageCurves {
   std::vector<double> removed_mm3_per_s;
   std::vector<double> feed_mm_per_min;
   std::vector<double> spindle_rpm;
+  /// Of a kind of load: in columns of its own step, no more than there are of the others.
+  struct Load {
+    LoadKind kind = LoadKind::kAngle;
+    double step_s = 0;
+    std::vector<double> nominal;
+    std::vector<double> high;  ///< ends of its range; empty: it has none
+    double limit = 0;          ///< 0: none is known
+  };
+  std::vector<Load> loads;
+  /// Of each column, where a click leads; empty: nowhere.
+  std::vector<PageSpot> spots;
 };
 
 /// What triangles are coloured by: who cut them.

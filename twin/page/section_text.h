@@ -45,15 +45,10 @@ class SectionText {
     }
     html_ += "</tr></thead><tbody>\n";
   }
-  void row(const std::vector<std::string>& cells) {
-    html_ += "<tr>";
-    std::size_t column = 0;
-    for (const std::string& cell : cells) {
-      const bool is_number = column < numbers_.size() && numbers_[column++];
-      html_ += fmt::format("<td{}>{}</td>", is_number ? " class=\"n\"" : "", shown(cell));
-    }
-    html_ += "</tr>\n";
-    is_empty_ = false;
+  void row(const std::vector<std::string>& cells) { add_row(cells, {}); }
+  /// With one cell more at the end, of HTML.
+  void row(const std::vector<std::string>& cells, std::string_view html) {
+    add_row(cells, fmt::format("<td class=\"n\">{}</td>", html));
   }
   void end_table() { html_ += "</tbody></table>\n"; }
   void facts(std::span<const std::pair<std::string, std::string>> facts) {
@@ -71,6 +66,16 @@ class SectionText {
   std::string done() && { return is_empty_ ? std::string() : std::move(html_) + "</section>\n"; }
 
  private:
+  void add_row(const std::vector<std::string>& cells, std::string_view last) {
+    html_ += "<tr>";
+    std::size_t column = 0;
+    for (const std::string& cell : cells) {
+      const bool is_number = column < numbers_.size() && numbers_[column++];
+      html_ += fmt::format("<td{}>{}</td>", is_number ? " class=\"n\"" : "", shown(cell));
+    }
+    html_ += fmt::format("{}</tr>\n", last);
+    is_empty_ = false;
+  }
   std::string shown(std::string_view text) const { return xml_text(in_unit(text, units_)); }
 
   LengthUnit units_;

@@ -11,6 +11,8 @@ namespace {
 /// A piece of work: about a millisecond.
 constexpr std::size_t kMotionsAtOnce = 512;
 constexpr double kCellsAtOnce = 1e6;
+/// Where tools' engagement is measured a motion takes some 20 us more.
+constexpr std::size_t kMeasuredAtOnce = 64;
 
 MotionMoves moves_of(const StockModel& blank, const TimelineOptions& options,
                      const ProgramTrack& track, const ProcessPlan& process) {
@@ -39,8 +41,15 @@ Frontier::Frontier(const ProgramTrack& track, std::unique_ptr<StockModel> blank,
   if (scope_.from > 0) stage_.hold_reports();
 }
 
+void Frontier::measure_loads(std::shared_ptr<const ProgramTrack> track) {
+  stage_.log_engagement(engagement_.emplace(false));
+  stage_.hear_loads(*(loads_ = std::make_shared<LoadRecord>(std::move(track))));
+}
+
 /// The motion at reached_, or all pieces of its step. Returns the number of the motion behind it.
 std::size_t Frontier::take_one(std::size_t settled) {
+  // The workpiece keeps moves by the numbers of their motions (RecordingStock).
+  if (loads_) stage_.number_from(reached_);
   if (!steps_.track) {
     stock_.expect(settled, reached_ + 1);
     stage_.take_timed(track_.motion(reached_), track_.step(reached_));
@@ -69,8 +78,9 @@ void Frontier::advance(std::size_t end) {
   end = std::min(end, track_.size());
   const std::size_t first = reached_;
   const std::shared_ptr<const Cutter> cutter = first < end ? record_.cutter(first) : nullptr;
+  const std::size_t most = loads_ ? kMeasuredAtOnce : kMotionsAtOnce;
   double cells = 0;
-  while (reached_ < end && reached_ - first < kMotionsAtOnce && cells < kCellsAtOnce) {
+  while (reached_ < end && reached_ - first < most && cells < kCellsAtOnce) {
     if (reached_ == scope_.from && scope_.from > 0) stage_.release_reports();
     for (const std::size_t next = take_one(first); reached_ < next; ++reached_) {
       if (cutter) cells += cells_under(track_.cut_move(reached_), *cutter, stock_.cell_mm());

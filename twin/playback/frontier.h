@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,10 +14,12 @@
 #include "twin/machine/timeline.h"
 #include "twin/playback/cut_record.h"
 #include "twin/playback/keyframe_store.h"
+#include "twin/playback/load_record.h"
 #include "twin/playback/program_track.h"
 #include "twin/playback/programmed_steps.h"
 #include "twin/playback/recording_stock.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/engagement_log.h"
 
 namespace kerf {
 
@@ -40,6 +43,9 @@ class Frontier {
   /// The findings are to be those of these steps, the track being of their planned path. Before the
   /// first advance().
   void judge(ProgrammedSteps steps) { steps_ = std::move(steps); }
+  /// How tools are engaged is measured, and what that takes is in loads(). Before the first
+  /// advance(). `track`: the one that is cut.
+  void measure_loads(std::shared_ptr<const ProgramTrack> track);
   /// Cuts some motions more, about a millisecond's worth, but not motion `end` nor those behind it
   /// (of planned paths: but for the other pieces of a step that begins before it).
   void advance(std::size_t end);
@@ -52,6 +58,8 @@ class Frontier {
   /// How the program's motions are cut.
   const MotionMoves& moves() const { return moves_; }
   const FindingLog& findings() const { return log_; }
+  /// Null: they are not measured. Any thread.
+  std::shared_ptr<const LoadRecord> loads() const { return loads_; }
 
  private:
   std::size_t take_one(std::size_t settled);
@@ -61,6 +69,8 @@ class Frontier {
   RecordingStock stock_;
   ToolResolver resolver_;
   FindingLog log_;
+  std::optional<EngagementLog> engagement_;  ///< that outlives the stage
+  std::shared_ptr<LoadRecord> loads_;
   CutStage stage_;
   ReportScope scope_;
   ProgrammedSteps steps_;

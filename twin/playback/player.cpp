@@ -118,6 +118,8 @@ using Kind = PlayerCommand::Kind;
 
 std::vector<float> Player::removed_mm3() const { return impl_->engine.removed_mm3(); }
 
+std::shared_ptr<const LoadRecord> Player::loads() const { return impl_->engine.loads(); }
+
 Player::Ticket Player::play(double speed) {
   return impl_->send({.kind = Kind::kPlay, .number = speed});
 }

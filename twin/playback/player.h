@@ -25,6 +25,8 @@
 
 namespace kerf {
 
+class LoadRecord;
+
 /// What is played.
 struct PlayerProgram {
   std::shared_ptr<const ProgramTrack> track;
@@ -40,6 +42,9 @@ struct PlayerProgram {
   /// Motions before this one are cut, but not reported on (--from-line).
   std::size_t report_from = 0;
   CheckOptions checks;
+  /// How tools are engaged is measured, as Session does with log_engagement(): `checks.cutting` and
+  /// tools' own limits are judged, and Player::loads() is there.
+  bool measures_loads = false;
   /// For nothing-cut: judged_blank().
   BlankKind blank_kind = BlankKind::kUnjudged;
   bool whole = true;  ///< false: it goes on behind the track's end, unread
@@ -132,6 +137,8 @@ class Player {
   /// Removed by each motion, as far as the program has been cut; 0 beyond. Any thread, a
   /// nanosecond a motion.
   std::vector<float> removed_mm3() const;
+  /// Of the part that has been cut; null: PlayerProgram::measures_loads is not set. Any thread.
+  std::shared_ptr<const LoadRecord> loads() const;
 
   /// `speed` > 0: program seconds a second; infinity: as fast as it can be cut, to the end.
   Ticket play(double speed = 1);

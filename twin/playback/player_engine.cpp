@@ -48,6 +48,7 @@ PlayerEngine::PlayerEngine(PlayerProgram program, const PlayerOptions& options)
       place_(track_->place_before(0)),
       findings_(std::make_shared<const std::vector<Finding>>(by_time({}, remarks_))) {
   frontier_.judge(std::move(program.programmed));
+  if (program.measures_loads) frontier_.measure_loads(track_);
 }
 
 void PlayerEngine::command(const PlayerCommand& c) {

@@ -60,6 +60,7 @@ class PlayerEngine {
   /// When the next state should be shown; max(): there is nothing new to show.
   /// Any thread.
   std::vector<float> removed_mm3() const { return frontier_.record().removed_mm3(); }
+  std::shared_ptr<const LoadRecord> loads() const { return frontier_.loads(); }
   Clock::time_point state_due_at() const;
   std::shared_ptr<const PlayerState> take_state();
 

@@ -52,6 +52,12 @@ class CutStage : private StepSink {
   /// It is told what the cuts of milling tools ask of the spindle, where the material is known and
   /// engagement is logged. Before the first motion.
   void tell_loads(CutLoadHearer hearer) { site_.hears_loads = std::move(hearer); }
+  /// With log_engagement(): from now on it is told what the cuts of milling tools are like. Before
+  /// the first motion; outlives the stage.
+  void hear_loads(LoadListener& listener) { site_.loads = &listener; }
+  /// The workpiece does not keep milling moves by their own numbers: the move of the motion that is
+  /// taken next counts as this one, of one with a path each piece as the next one.
+  void number_from(std::uint64_t first) { site_.first_id = first; }
   /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
   /// outlives the stage.
   void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }

@@ -39,6 +39,7 @@ namespace kerf {
 
 class EngagementLog;
 class KeptMoves;
+class LoadListener;
 
 /// What CutStage holds for its process, and keeps up to date. It outlives the process.
 struct ProcessSite {
@@ -52,16 +53,18 @@ struct ProcessSite {
   CutLabels* labels = nullptr;          ///< CutStage::label_by()
   KeptMoves* kept = nullptr;            ///< CutStage::keep_moves()
   EngagementLog* engagement = nullptr;  ///< CutStage::log_engagement()
+  LoadListener* loads = nullptr;        ///< CutStage::hear_loads()
   BlankKind blank = BlankKind::kUnjudged;
   bool timed = false;    ///< motions come with their times: CutStage::take_timed()
   bool watched = false;  ///< CutStage::watch_machine()
   bool holding = false;  ///< nothing is reported on yet
   /// How the machine turns tool and workpiece, whatever the model takes; null: nobody has said.
   std::shared_ptr<const MachineKinematics> kinematics{};
-  WorkpieceFrame frame{};              ///< where the workpiece lies in the machine
-  MotionRecorder* recorder = nullptr;  ///< CutStage::record_by()
-  std::uint64_t motion = 0;            ///< its number of the motion that is taken now
-  CutLoadHearer hears_loads{};         ///< CutStage::tell_loads()
+  WorkpieceFrame frame{};                   ///< where the workpiece lies in the machine
+  MotionRecorder* recorder = nullptr;       ///< CutStage::record_by()
+  std::uint64_t motion = 0;                 ///< its number of the motion that is taken now
+  std::optional<std::uint64_t> first_id{};  ///< CutStage::number_from()
+  CutLoadHearer hears_loads{};              ///< CutStage::tell_loads()
 
   /// Of a motion, one of its moves has been cut.
   void note_cut(std::uint64_t number, double removed_mm3, double depth_mm) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "interp_bridge/motion_kinds.h"
+#include "twin/motion/motion_geometry.h"
 
 namespace kerf {
 
@@ -19,6 +20,11 @@ void RunCurve::double_step() {
     into.feed_mm += column.feed_mm;
     into.feed_s += column.feed_s;
     into.turns += column.turns;
+    if (column.motion_s > into.motion_s) {
+      into.source = column.source;
+      into.at_mm = column.at_mm;
+      into.motion_s = column.motion_s;
+    }
   }
   columns_.resize((columns_.size() + 1) / 2);
   step_s_ *= 2;
@@ -43,6 +49,12 @@ void RunCurve::add(const Share& share) {
       column.feed_s += seconds;
     }
     column.turns += share.rpm * seconds / 60;
+    if (share.motion != nullptr && seconds > column.motion_s) {
+      const double middle_s = 0.5 * (from_s + to_s) - share.start_s;
+      column.source = share.motion->source;
+      column.at_mm = point_at(*share.motion, middle_s / share.duration_s);
+      column.motion_s = seconds;
+    }
     if (share.duration_s <= 0) break;
   }
 }
@@ -50,7 +62,7 @@ void RunCurve::add(const Share& share) {
 void RunCurve::on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) {
   const bool is_turning = motion.spindle != SpindleState::kStopped;
   add({step.start_s, step.duration_s, 0, is_feed(motion) ? step.length_mm : 0,
-       is_turning ? motion.spindle_rpm : 0});
+       is_turning ? motion.spindle_rpm : 0, &motion});
   waiting_.push_back({number, step.start_s, step.duration_s});
 }
 

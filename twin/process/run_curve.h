@@ -20,13 +20,18 @@ class RunCurve final : public MotionRecorder {
     double removed_mm3 = 0;
     double feed_mm = 0, feed_s = 0;  ///< way and time of feed moves
     double turns = 0;                ///< of the spindle
+    /// Of the motion that takes longest of it, and where that is in the middle of that time.
+    SourceRef source;
+    Vec3 at_mm{0};
+    double motion_s = 0;  ///< how long it takes; 0: none has been told
   };
   /// What a motion did, evenly over its time.
   struct Share {
     double start_s = 0, duration_s = 0;
     double removed_mm3 = 0;
-    double feed_mm = 0;  ///< 0: it is no feed move
-    double rpm = 0;      ///< 0: the spindle stands
+    double feed_mm = 0;              ///< 0: it is no feed move
+    double rpm = 0;                  ///< 0: the spindle stands
+    const Motion* motion = nullptr;  ///< null: its columns do not say which it was
   };
 
   /// Shares of the past are welcome, too; those without a time count where they are.

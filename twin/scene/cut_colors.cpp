@@ -24,10 +24,11 @@ constexpr std::array<std::uint32_t, 10> kNumbered{
     rgb(100, 200, 205), rgb(165, 125, 90)};
 constexpr std::uint32_t kChosen = rgb(240, 150, 40);
 constexpr std::uint32_t kNotChosen = rgb(150, 150, 155);
-/// From slow to fast: blue, green, yellow, red.
-constexpr std::array<std::uint32_t, 6> kRates{rgb(70, 90, 190),  rgb(60, 150, 200),
-                                              rgb(80, 180, 130), rgb(190, 205, 80),
-                                              rgb(240, 165, 50), rgb(215, 70, 50)};
+/// Told apart, with value_colors()'s other two, by who lacks one kind of cone as well: 13 or more
+/// in CIE 1976 (after Machado, Oliveira and Fernandes 2009).
+constexpr std::array<std::uint32_t, kRisingColors> kRising{rgb(72, 40, 120),  rgb(62, 83, 160),
+                                                           rgb(38, 130, 142), rgb(53, 170, 120),
+                                                           rgb(150, 205, 70), rgb(250, 230, 70)};
 
 void by_tool(const ProgramTrack& track, const std::vector<NamedTool>& tools, CutColors& colors) {
   std::map<int, std::size_t> places;
@@ -69,22 +70,24 @@ void color_by_rate(std::span<const float> rates, CutColors& colors) {
   }
   if (sorted.empty()) return;
   std::sort(sorted.begin(), sorted.end());
-  std::array<float, kRates.size()> upper{};
-  for (std::size_t k = 0; k < kRates.size(); ++k) {
-    const float bound = sorted[(sorted.size() - 1) * (k + 1) / kRates.size()];
+  std::array<float, kRising.size()> upper{};
+  for (std::size_t k = 0; k < kRising.size(); ++k) {
+    const float bound = sorted[(sorted.size() - 1) * (k + 1) / kRising.size()];
     const float digit = std::pow(10.0f, std::floor(std::log10(bound)) - 1);
     upper[k] = std::ceil(bound / digit) * digit;
   }
   for (std::size_t i = 0; i < rates.size(); ++i) {
     if (rates[i] <= 0) continue;
     const auto found = std::lower_bound(upper.begin(), upper.end() - 1, rates[i]);
-    colors.of_move[i] = kRates[static_cast<std::size_t>(found - upper.begin())];
+    colors.of_move[i] = kRising[static_cast<std::size_t>(found - upper.begin())];
   }
-  for (std::size_t k = 0; k < kRates.size(); ++k) {
+  for (std::size_t k = 0; k < kRising.size(); ++k) {
     if (k > 0 && upper[k] == upper[k - 1]) continue;
-    colors.legend.push_back({kRates[k], fmt::format("<= {:.3g} mm\u00b3/s", upper[k]), upper[k]});
+    colors.legend.push_back({kRising[k], fmt::format("<= {:.3g} mm\u00b3/s", upper[k]), upper[k]});
   }
 }
+
+std::span<const std::uint32_t, kRisingColors> rising_colors() { return kRising; }
 
 std::uint32_t color_of_number(std::size_t number) { return kNumbered[number % kNumbered.size()]; }
 
@@ -102,9 +105,9 @@ ColorLegendEntry line_range_entry(const ColorCommand& wanted) {
   return {kChosen, fmt::format("{} - {}", wanted.first_line, wanted.last_line)};
 }
 
-std::shared_ptr<const CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
-                                            const std::vector<NamedTool>& tools,
-                                            const std::vector<float>& removed_mm3) {
+std::shared_ptr<CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
+                                      const std::vector<NamedTool>& tools,
+                                      const std::vector<float>& removed_mm3) {
   auto colors = std::make_shared<CutColors>();
   colors->mode = wanted.mode;
   colors->of_move.resize(track.size());
@@ -118,9 +121,7 @@ std::shared_ptr<const CutColors> cut_colors(const ColorCommand& wanted, const Pr
     case ColorBy::kLineRange:
       by_lines(wanted, track, *colors);
       break;
-    case ColorBy::kPlain:
-    case ColorBy::kHeight:
-    case ColorBy::kDeviation:
+    default:
       return nullptr;
   }
   return colors;

@@ -15,6 +15,10 @@ namespace kerf {
 /// Ten colours that are told apart well, also by those who see red and green alike.
 std::uint32_t color_of_number(std::size_t number);
 
+/// From little to much, of rising brightness.
+inline constexpr std::size_t kRisingColors = 6;
+std::span<const std::uint32_t, kRisingColors> rising_colors();
+
 /// A tool of the program, for marks and legends.
 struct NamedTool {
   int number = 0;
@@ -33,8 +37,8 @@ void color_by_rate(std::span<const float> rates, CutColors& colors);
 
 /// For kTool, kRemovalRate and kLineRange; null for the others. `removed_mm3`: by motion, as far as
 /// the program has been cut; what lies beyond counts as unknown.
-std::shared_ptr<const CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
-                                            const std::vector<NamedTool>& tools,
-                                            const std::vector<float>& removed_mm3);
+std::shared_ptr<CutColors> cut_colors(const ColorCommand& wanted, const ProgramTrack& track,
+                                      const std::vector<NamedTool>& tools,
+                                      const std::vector<float>& removed_mm3);
 
 }  // namespace kerf

@@ -12,6 +12,7 @@
 #include "base/translate.h"
 #include "twin/scene/finding_view.h"
 #include "twin/scene/patch_feeder.h"
+#include "twin/scene/picture_legend.h"
 #include "twin/scene/turned_look.h"
 #include "viewer/gl_context.h"
 #include "viewer/labels.h"
@@ -22,7 +23,7 @@
 namespace kerf {
 namespace {
 
-constexpr float kWords_px = 17, kEdge_px = 22, kNext_px = 1.8f * kWords_px;
+constexpr float kWords_px = kLegendWords_px, kEdge_px = kLegendEdge_px;
 constexpr glm::vec4 kWordsInk{0.10f, 0.11f, 0.13f, 1.0f}, kWordsHalo{1.0f, 1.0f, 1.0f, 0.92f};
 
 Done draw_all(SceneRenderer& renderer, const Projection& projection, const DrawOptions& options) {
@@ -34,24 +35,6 @@ Done draw_all(SceneRenderer& renderer, const Projection& projection, const DrawO
 
 void add_words(const std::string& text, glm::vec2 at_px, std::vector<Stroke>* strokes) {
   add_label(text, at_px, {0, 0}, {kWords_px, kWordsInk, kWordsHalo}, strokes);
-}
-
-/// Patches of a square of colour beside each word.
-void add_legend(const std::vector<ColorLegendEntry>& legend, std::vector<Stroke>* strokes) {
-  float y = kEdge_px + kWords_px;
-  for (const ColorLegendEntry& entry : legend) {
-    const auto part = [&](unsigned shift) {
-      return static_cast<float>(entry.color >> shift & 0xffu) / 255.0f;
-    };
-    Stroke square;
-    square.from_px = {kEdge_px + kWords_px / 2, y - kWords_px / 2};
-    square.to_px = square.from_px + glm::vec2(kWords_px, 0);
-    square.width_px = kWords_px;
-    square.rgba = {part(0), part(8), part(16), 1.0f};
-    strokes->push_back(square);
-    add_words(entry.text, {kEdge_px + 3 * kWords_px, y}, strokes);
-    y += kNext_px;
-  }
 }
 
 void add_mark(const Vec3& place, const std::string& text, const Projection& projection,

@@ -16,6 +16,9 @@ class FrameDrawer {
   /// Error: draw() cannot draw this place of the program, nor those behind it.
   virtual Done can_reach(const TrackPosition&) { return std::monostate{}; }
   virtual Result<Picture> draw(const std::shared_ptr<const PlayerState>& state) = 0;
+  /// FrameRenderer::color().
+  virtual void color(const std::vector<float>& /*removed_mm3*/,
+                     std::shared_ptr<const LoadRecord> /*loads*/) {}
 };
 
 /// What a drawer begins with.

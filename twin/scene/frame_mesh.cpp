@@ -2,9 +2,12 @@
 #include <chrono>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "twin/scene/frame_drawer.h"
+#include "twin/scene/picture_legend.h"
 #include "viewer/gl_context.h"
+#include "viewer/raycast/stroke_raster.h"
 
 namespace kerf {
 namespace {
@@ -43,7 +46,20 @@ class MeshDrawer final : public FrameDrawer {
         return Error{done.error()};
       }
     } while (renderer_.has_waiting());
-    return renderer_.read();
+    Picture picture = renderer_.read();
+    if (!is_by_move(options_.draw.color_by)) return picture;
+    std::vector<Stroke> strokes;
+    add_legend(renderer_.legend(Measures(options_.units)), &strokes);
+    const std::vector<float> depths(picture.rgb.size() / 3, 1.0f);
+    draw_strokes(strokes, depths, &picture);
+    return picture;
+  }
+
+  void color(const std::vector<float>& removed_mm3,
+             std::shared_ptr<const LoadRecord> loads) override {
+    if (!is_by_move(options_.draw.color_by)) return;
+    if (loads) scene_.show_loads(std::move(loads));
+    scene_.set_colors({options_.draw.color_by, 0, 0}, removed_mm3);
   }
 
  private:

@@ -41,6 +41,10 @@ Result<Picture> FrameRenderer::draw(const std::shared_ptr<const PlayerState>& st
   return draw_mode_->draw(state);
 }
 
+void FrameRenderer::color(const Player& player) {
+  draw_mode_->color(player.removed_mm3(), player.loads());
+}
+
 Result<std::size_t> write_film(Player& player, FrameRenderer& renderer, const FilmOptions& options,
                                std::stop_token stop, const std::function<void(double)>& on_frame) {
   const ProgramTrack& track = player.track();
@@ -62,6 +66,7 @@ Result<std::size_t> write_film(Player& player, FrameRenderer& renderer, const Fi
     while (!player.wait(ticket, kPatience) && !stop.stop_requested()) {
     }
     if (stop.stop_requested()) break;
+    renderer.color(player);
     const Result<Picture> picture = renderer.draw(player.state());
     if (!picture) return Error{picture.error()};
     const std::string path =

@@ -28,7 +28,8 @@ struct FrameOptions {
   /// workpiece's cells, so walls are smooth at any cell size; at most 20 000 moves, and the blank
   /// must be a box.
   DrawMode draw_mode = DrawMode::kMesh;
-  DrawOptions draw;  ///< of kMesh
+  DrawOptions draw;                    ///< of kMesh
+  LengthUnit units = LengthUnit::kMm;  ///< of the legend
 };
 
 class FrameDrawer;
@@ -51,6 +52,9 @@ class FrameRenderer {
   /// All patches and the whole path are there in the picture. Cheaper for a place that lies behind
   /// the one drawn before than for one before it. Error: as can_reach(); OpenGL failed.
   Result<Picture> draw(const std::shared_ptr<const PlayerState>& state);
+  /// Before draw(), where DrawOptions::color_by goes by moves: what the player knows of them; the
+  /// legend is in the picture then. Of kMesh; else without effect.
+  void color(const Player& player);
 
  private:
   explicit FrameRenderer(std::unique_ptr<FrameDrawer> draw_mode);

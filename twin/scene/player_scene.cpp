@@ -10,6 +10,7 @@
 #include "twin/scene/moment_values.h"
 #include "twin/scene/program_text.h"
 #include "twin/scene/tool_shape.h"
+#include "twin/scene/value_colors.h"
 
 namespace kerf {
 namespace {
@@ -112,6 +113,8 @@ ViewedProgram viewed_program(const LoadedProgram& loaded, std::string title) {
   }
   shown.cuts = loaded.cuts;
   shown.collisions = loaded.player.checks.collisions;
+  shown.cutting = loaded.player.checks.cutting;
+  shown.measures_loads = loaded.player.measures_loads;
   shown.walls = SheetQuery::of(loaded.player);
   shown.planned = loaded.player.timeline.planner.with_path;
   if (loaded.player.blank) {
@@ -170,6 +173,8 @@ SceneUpdate PlayerScene::start(const PlayerState& state) const {
   auto timeline = std::make_shared<ProgramTimeline>();
   timeline->duration_s = track_->duration_s();
   timeline->has_curves = timeline->duration_s > 0;
+  timeline->has_loads = timeline->has_curves && shown_.measures_loads && !shown_.turns;
+  timeline->has_forces = timeline->has_loads && shown_.cutting.material;
   for (const std::uint32_t motion : track_->tool_changes()) {
     ToolMark mark;
     mark.time_s = track_->start_s(motion);
@@ -201,13 +206,37 @@ void PlayerScene::set_controls(double speed, std::vector<SourceRef> breakpoints)
 }
 
 void PlayerScene::set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3) {
-  waiting_.colors = cut_colors(command, *track_, shown_.tools, removed_mm3);
+  colors_ = command;
+  colored_at_ = Clock::now();
+  std::shared_ptr<CutColors> colors;
+  if (command.mode >= ColorBy::kFeed && command.mode <= ColorBy::kBend) {
+    const MoveFacts facts{removed_mm3, shown_.cuts.get(), loads_.get(), &shown_.cutting};
+    colors = value_colors(command.mode, *track_, facts);
+  } else {
+    colors = cut_colors(command, *track_, shown_.tools, removed_mm3);
+  }
+  if (colors) colors->is_of_path = true;
+  waiting_.colors = std::move(colors);
+}
+
+void PlayerScene::show_loads(std::shared_ptr<const LoadRecord> loads) {
+  loads_ = loads;
+  curves_.show_loads(std::move(loads), shown_.cutting);
+}
+
+/// What goes by what has been cut, while more is: no more often than it takes little.
+void PlayerScene::color_again(const std::vector<float>& removed_mm3) {
+  constexpr std::chrono::seconds kPeriod{2};
+  const bool grows = colors_.mode >= ColorBy::kRemovalRate && colors_.mode <= ColorBy::kBend;
+  if (grows && (curves_.is_complete() || Clock::now() - colored_at_ >= kPeriod))
+    set_colors(ColorCommand(colors_), removed_mm3);
 }
 
 void PlayerScene::add_curves(const PlayerState& state, const std::vector<float>& removed_mm3) {
   constexpr std::chrono::milliseconds kSlice{4};
   if (auto made = curves_.make(state.motions_checked, removed_mm3, Clock::now() + kSlice))
     waiting_.curves = std::move(made);
+  color_again(removed_mm3);
 }
 
 void PlayerScene::pick(const Vec3& point_mm, const PlayerState& state) {

@@ -49,6 +49,8 @@ struct ViewedProgram {
   std::shared_ptr<const DesignPart> design;     ///< the surface is compared with; null: with none
   double tolerance_mm = 0.05;                   ///< of that comparison
   CollisionWishes collisions;                   ///< fixtures and spindle, as they are checked
+  CuttingWish cutting;                          ///< the material, and what is held against forces
+  bool measures_loads = false;                  ///< the player says what cuts are like
 };
 
 /// Where the tool is in the workpiece.
@@ -92,12 +94,15 @@ class PlayerScene {
   void set_draw_mode(DrawMode draw_mode) { draw_modes_.choose(draw_mode); }
   /// What the player does not know: speed asked for, breakpoints of the user.
   void set_controls(double speed, std::vector<SourceRef> breakpoints);
+  /// Of the player, where cuts are measured: before the first curves and colours.
+  void show_loads(std::shared_ptr<const LoadRecord> loads);
   void set_colors(const ColorCommand& command, const std::vector<float>& removed_mm3);
   /// Curves of what has been checked are due.
   bool wants_curves(const PlayerState& state) const {
     return curves_.wants(state.motions_checked, Clock::now());
   }
-  /// Within a few milliseconds; what is new is in the next update. `removed_mm3`: by motion.
+  /// Within a few milliseconds; what is new is in the next update, with colours that go by what has
+  /// been cut. `removed_mm3`: by motion.
   void add_curves(const PlayerState& state, const std::vector<float>& removed_mm3);
   /// Which motion made this point of the surface; the answer is in the next update.
   void pick(const Vec3& point_mm, const PlayerState& state);
@@ -116,6 +121,7 @@ class PlayerScene {
   void find_cut(const Vec3& point_mm, const PlayerState& state, PickedPoint& picked) const;
   ToolPose tool_pose(const PlayerState& state) const;
   std::shared_ptr<const Moment> moment_of(const PlayerState& state);
+  void color_again(const std::vector<float>& removed_mm3);
   bool is_removed_due(const PlayerState& state) const;
   double removed_mm3(const PlayerState& state);
 
@@ -138,6 +144,9 @@ class PlayerScene {
   double tool_length_mm_ = 0;
   double removed_mm3_ = 0;
   std::uint64_t removed_stock_ = 0;
+  std::shared_ptr<const LoadRecord> loads_;  ///< null: none
+  ColorCommand colors_;                      ///< asked for last
+  Clock::time_point colored_at_{};
   Clock::time_point removed_at_{};
   /// Kept, so that a new one cannot have the address of one that was shown.
   std::shared_ptr<const std::vector<Finding>> shown_findings_;

@@ -33,7 +33,9 @@ PlayerView::PlayerView(PlayerProgram program, PlayerOptions options, ViewedProgr
       mailbox_(mailbox),
       commands_(commands),
       player_(std::move(program), with_frequent_states(std::move(options))),
-      scene_(track_, std::move(shown)) {}
+      scene_(track_, std::move(shown)) {
+  if (auto loads = player_.loads()) scene_.show_loads(std::move(loads));
+}
 
 void PlayerView::run(std::stop_token stop, std::optional<double> speed,
                      const std::function<bool()>& is_over) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "interp_bridge/motion_kinds.h"
+#include "twin/scene/value_colors.h"
 
 namespace kerf {
 
@@ -67,6 +68,32 @@ std::uint32_t CurveMaker::color_at(double time_s) {
   return color_of_number(place);
 }
 
+/// Their columns may be finer yet, or coarser where loads are known of what is not added up yet.
+void CurveMaker::add_loads(ProgramCurves& curves) const {
+  if (!loads_ || curves.color.empty()) return;
+  const LoadCurve found = loads_->curve();
+  for (std::size_t k = 0; k < kLoadKinds; ++k) {
+    const auto nominal = found.nominal(static_cast<LoadKind>(k));
+    const auto high = found.high(static_cast<LoadKind>(k));
+    SceneLoadCurve& curve = curves.loads[k];
+    curve.limit = limit_of(static_cast<CutLoadKind>(k), wish_);
+    if (nominal.empty()) continue;
+    curve.nominal.resize(curves.color.size());
+    curve.high.resize(curves.color.size());
+    for (std::size_t i = 0; i < nominal.size(); ++i) {
+      // Steps are the same but for a power of two.
+      const double begin_s = static_cast<double>(i) * found.step_s();
+      const auto at = static_cast<std::size_t>(begin_s / curves.step_s + 1e-9);
+      const auto end = std::max(
+          at + 1, static_cast<std::size_t>((begin_s + found.step_s()) / curves.step_s + 1e-9));
+      for (std::size_t to = at; to < std::min(end, curve.nominal.size()); ++to) {
+        curve.nominal[to] = std::max(curve.nominal[to], nominal[i]);
+        curve.high[to] = std::max(curve.high[to], high[i]);
+      }
+    }
+  }
+}
+
 std::shared_ptr<const ProgramCurves> CurveMaker::curves() {
   auto made = std::make_shared<ProgramCurves>();
   made->step_s = all_.step_s();
@@ -78,6 +105,7 @@ std::shared_ptr<const ProgramCurves> CurveMaker::curves() {
     made->feed_mm_per_min.push_back(
         column.feed_s > 0 ? static_cast<float>(60 * column.feed_mm / column.feed_s) : 0);
   }
+  add_loads(*made);
   if (teeth_.columns().empty()) return made;
   made->feed_per_tooth_mm.resize(made->color.size());
   // Its columns may be finer yet.

@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "twin/playback/cut_query.h"
+#include "twin/playback/load_record.h"
 #include "twin/playback/program_track.h"
+#include "twin/process/cutting_wish.h"
 #include "twin/process/run_curve.h"
 #include "twin/scene/cut_colors.h"
 #include "viewer/scene.h"
@@ -30,6 +33,11 @@ class CurveMaker {
 
   /// There is more to be added up than was, and it is time for it.
   bool wants(std::size_t motions_checked, Clock::time_point now) const;
+  /// The curves have what cuts were like, from now on. `wish`: what is held against them.
+  void show_loads(std::shared_ptr<const LoadRecord> loads, const CuttingWish& wish) {
+    loads_ = std::move(loads);
+    wish_ = wish;
+  }
   /// Goes on until `deadline`, or all that has been checked is in it; null: not yet. `removed_mm3`:
   /// by motion.
   std::shared_ptr<const ProgramCurves> make(std::size_t motions_checked,
@@ -44,9 +52,12 @@ class CurveMaker {
   void add(std::size_t motion, double removed_mm3);
   std::uint32_t color_at(double time_s);
   std::shared_ptr<const ProgramCurves> curves();
+  void add_loads(ProgramCurves& curves) const;
 
   std::shared_ptr<const ProgramTrack> track_;
   std::shared_ptr<const CutQuery> cuts_;
+  std::shared_ptr<const LoadRecord> loads_;  ///< null: none
+  CuttingWish wish_;
   std::vector<NamedTool> tools_;
   /// All motions; and of feed moves that removed something by a tool of known teeth, the turns of
   /// each tooth.

@@ -70,16 +70,16 @@ void TrackPath::add(std::size_t motion) {
   const PathKind shown = track_->is_traverse(motion) ? PathKind::kTraverse : feed_kind_;
   if (moves_.path() != nullptr && add_tilted(motion, shown)) return;
   const Vec3 from_mm = track_->from_mm(motion);
-  if (vertices_ == 0) push(from_mm, PathKind::kTraverse);
+  if (vertices_ == 0) push(from_mm, PathKind::kTraverse, motion);
   first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
   if (kind == MotionKind::kArc) {
     const Motion arc = track_->motion(motion);
     const int chords = chords_of(arc.arc, arc.from_mm);
     for (int i = 1; i < chords; ++i) {
-      push(point_at(arc, static_cast<double>(i) / chords), shown);
+      push(point_at(arc, static_cast<double>(i) / chords), shown, motion);
     }
   }
-  push(track_->to_mm(motion), shown);
+  push(track_->to_mm(motion), shown, motion);
 }
 
 /// False: the motion is one of an upright tool.
@@ -88,14 +88,16 @@ bool TrackPath::add_tilted(std::size_t motion, PathKind kind) {
   if (moves_.is_upright(tilted)) return false;
   divided_.clear();
   moves_.path()->moves_of(tilted, kTipReach_mm, motion, divided_);
-  if (vertices_ == 0 && !divided_.empty()) push(divided_.front().from_mm, PathKind::kTraverse);
+  if (vertices_ == 0 && !divided_.empty())
+    push(divided_.front().from_mm, PathKind::kTraverse, motion);
   first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
-  for (const CutMove& move : divided_) push(move.to_mm, kind);
+  for (const CutMove& move : divided_) push(move.to_mm, kind, motion);
   return true;
 }
 
-void TrackPath::push(const Vec3& at, PathKind kind) {
-  const PathVertex vertex{glm::vec3(at), kind};
+void TrackPath::push(const Vec3& at, PathKind kind, std::size_t motion) {
+  const auto move = static_cast<std::uint32_t>(std::min<std::size_t>(motion, PathVertex::kNoMove));
+  const PathVertex vertex{glm::vec3(at), kind, move};
   if (!open_) open_ = new_chunk(0);
   open_->vertices.push_back(vertex);
   ++vertices_;

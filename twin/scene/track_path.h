@@ -14,7 +14,7 @@ namespace kerf {
 
 /// Made motion by motion, so that a long path can be handed over in parts. Arcs become chords that
 /// leave them by 0.02 mm at most, but need not be shorter than a degree. A program with more than
-/// kMaxVertices is shown up to there.
+/// kMaxVertices is shown up to there. A vertex says the number of its motion.
 class TrackPath {
  public:
   static constexpr std::size_t kMaxVertices = 100'000'000;
@@ -34,7 +34,7 @@ class TrackPath {
  private:
   void add(std::size_t motion);
   bool add_tilted(std::size_t motion, PathKind kind);
-  void push(const Vec3& at, PathKind kind);
+  void push(const Vec3& at, PathKind kind, std::size_t motion);
 
   std::shared_ptr<const ProgramTrack> track_;
   PathKind feed_kind_;

@@ -170,6 +170,7 @@ bool Session::begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcom
   }
   report_.findings = {};
   recorders_.restart();
+  if (load_listener_) load_listener_->restart();
   if (labels_) labels_.emplace();
   window_ = LineWindow(options_.lines);
   switched_ = SwitchedMotions(options_.timeline.kinematics);
@@ -210,6 +211,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   if (!recorders_.empty()) stage.record_by(recorders_);
   if (kept_moves_) stage.keep_moves(kept_moves_.emplace());
   if (engagement_) stage.log_engagement(*engagement_);
+  if (load_listener_) stage.hear_loads(*load_listener_);
   // Heights know to a cell where a wall is; the moves that made it know it exactly.
   const bool by_moves =
       engagement_ && dynamic_cast<const PresentHeights*>(&front_.stock.stock->bare()) != nullptr;

@@ -21,6 +21,7 @@
 #include "twin/process/cut_stage.h"
 #include "twin/process/engagement_log.h"
 #include "twin/process/kept_moves.h"
+#include "twin/process/load_listener.h"
 #include "twin/program/material_handover.h"
 #include "twin/program/program_front.h"
 #include "twin/report/line_window.h"
@@ -75,6 +76,8 @@ class Session {
   /// Before run(): how the tools are engaged is measured, for Report::engagement.
   void log_engagement(bool with_map) { engagement_.emplace(with_map); }
   /// The same, and each part of the feed moves is told to one who outlives the session.
+  /// With log_engagement(), before run(): it is told what the cuts of milling tools are like.
+  void hear_loads(LoadListener& listener) { load_listener_ = &listener; }
   void log_engagement(EngagementListener& listener) {
     engagement_.emplace(false);
     engagement_->tell(listener);
@@ -151,6 +154,7 @@ class Session {
   std::optional<CutLabels> labels_;
   std::optional<KeptMoves> kept_moves_;
   std::optional<EngagementLog> engagement_;
+  LoadListener* load_listener_ = nullptr;
   Report report_;
   std::atomic<bool> interpreting_{false};
   std::chrono::steady_clock::time_point start_;

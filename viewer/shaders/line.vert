@@ -12,6 +12,11 @@ uniform int by_kind;        // 1: coloured by kind as path.vert, 0: by a colour 
 uniform int is_past;
 uniform vec4 rgba[6];
 uniform float opacity;
+uniform int by_move;  // from here on as in path.vert
+uniform int move_count;
+uniform sampler2D move_colors;
+uniform vec3 other_rgb;
+uniform vec4 ground;
 noperspective out vec2 local_px;  // along the line from its beginning, and across
 flat out float length_px;
 flat out vec4 line_rgba;
@@ -26,8 +31,20 @@ vec4 clip_of(uvec4 end) {
   return clip;
 }
 
+vec3 color_of_move(uint move) {
+  if (move >= uint(move_count)) return other_rgb;
+  int width = textureSize(move_colors, 0).x;
+  return texelFetch(move_colors, ivec2(int(move) % width, int(move) / width), 0).rgb;
+}
+
 vec4 color_of(uint bits) {
-  if (by_kind != 0) return rgba[min(bits, 2u) * 2u + (is_past != 0 ? 0u : 1u)];
+  if (by_kind != 0) {
+    uint kind = bits & 3u;
+    vec4 plain = rgba[min(kind, 2u) * 2u + (is_past != 0 ? 0u : 1u)];
+    if (by_move == 0 || kind == 0u) return plain;
+    vec3 seen = color_of_move(bits >> 2u);
+    return vec4(is_past != 0 ? seen : mix(seen, ground.rgb, ground.a), plain.a);
+  }
   vec4 bytes = vec4((uvec4(bits) >> uvec4(0u, 8u, 16u, 24u)) & 255u) / 255.0;
   return vec4(bytes.rgb, bytes.a * opacity);
 }

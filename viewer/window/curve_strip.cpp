@@ -4,53 +4,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
+#include "base/curve_scale.h"
 #include "viewer/window/panels.h"
 
 namespace kerf {
 namespace {
 
+constexpr ImU32 kLimit = IM_COL32(235, 165, 50, 255), kPeak = IM_COL32(240, 90, 110, 255);
+/// Of the range's end above the nominal value.
+constexpr ImU32 kBandAlpha = 0x58000000u;
+
 struct Curve {
   const std::vector<float>* values = nullptr;
+  const std::vector<float>* high = nullptr;  ///< null: they have no range
+  double limit = 0.0;                        ///< 0: none is known
   Text name = Text::kCurveRate;
+  Text why_none = Text::kNoTeeth;  ///< where there are no values
 };
 
-Curve chosen_curve(const ProgramCurves& curves, CurveChoice choice) {
-  switch (choice) {
-    case CurveChoice::kNone:
+Text name_of(CutLoadKind kind) {
+  switch (kind) {
+    case CutLoadKind::kAngle:
+      return Text::kCurveAngle;
+    case CutLoadKind::kChip:
+      return Text::kCurveChip;
+    case CutLoadKind::kForce:
+      return Text::kCurveForce;
+    case CutLoadKind::kTorque:
+      return Text::kCurveTorque;
+    case CutLoadKind::kPower:
+      return Text::kCurvePower;
+    case CutLoadKind::kBend:
       break;
-    case CurveChoice::kRate:
-      return {&curves.mm3_per_s, Text::kCurveRate};
-    case CurveChoice::kFeed:
-      return {&curves.feed_mm_per_min, Text::kFeed};
-    case CurveChoice::kFeedPerTooth:
-      return {&curves.feed_per_tooth_mm, Text::kFeedPerTooth};
   }
-  return {};
+  return Text::kCurveBend;
 }
 
-std::string figure(const PanelContext& context, float value) {
-  const auto number = static_cast<double>(value);
+Curve load_curve(const PanelContext& context, CutLoadKind kind) {
+  const SceneLoadCurve& load = context.shown.curves->loads[static_cast<std::size_t>(kind)];
+  Curve curve{&load.nominal, nullptr, load.limit, name_of(kind), Text::kNoTeeth};
+  if (needs_material(kind)) curve.high = &load.high;
+  if (!is_offered(context.settings->curve, *context.shown.timeline))
+    curve.why_none = needs_material(kind) ? Text::kNeedsMaterial : Text::kNeedsEngagement;
+  else if (kind == CutLoadKind::kBend)
+    curve.why_none = Text::kNoStickout;
+  else if (kind == CutLoadKind::kAngle)
+    curve.why_none = Text::kNothingYet;
+  return curve;
+}
+
+Curve chosen_curve(const PanelContext& context) {
+  const ProgramCurves& curves = *context.shown.curves;
+  if (const auto load = load_of(context.settings->curve)) return load_curve(context, *load);
+  switch (context.settings->curve) {
+    case CurveChoice::kFeed:
+      return {&curves.feed_mm_per_min, nullptr, 0.0, Text::kFeed, Text::kNoTeeth};
+    case CurveChoice::kFeedPerTooth:
+      return {&curves.feed_per_tooth_mm, nullptr, 0.0, Text::kFeedPerTooth, Text::kNoTeeth};
+    default:
+      return {&curves.mm3_per_s, nullptr, 0.0, Text::kCurveRate, Text::kNoTeeth};
+  }
+}
+
+std::string figure(const PanelContext& context, double value) {
   switch (context.settings->curve) {
     case CurveChoice::kRate:
-      return context.measures.rate(number);
+      return context.measures.rate(value);
     case CurveChoice::kFeed:
-      return context.measures.feed(number);
+      return context.measures.feed(value);
     case CurveChoice::kFeedPerTooth:
-      return context.measures.length(number, context.measures.digits() + 1);
-    case CurveChoice::kNone:
-      break;
+      return context.measures.length(value, context.measures.digits() + 1);
+    default:
+      return context.measures.value(color_of(context.settings->curve), value);
   }
-  return {};
 }
 
 /// The greatest of the columns that share a pixel stands for them, in its colour.
-void draw_columns(const ProgramCurves& curves, const std::vector<float>& values, float top,
+void draw_columns(const ProgramCurves& curves, const Curve& curve, const CurveScale& scale,
                   double duration_s, ImVec2 low, ImVec2 high) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
+  const std::vector<float>& values = *curve.values;
   const double seconds_a_pixel = duration_s / static_cast<double>(high.x - low.x);
   const auto columns = static_cast<double>(values.size());
+  const auto height_of = [&](float value) {
+    const double share = std::min(1.0, static_cast<double>(value) / scale.top);
+    return std::max(1.0f, std::round(static_cast<float>(share) * (high.y - low.y)));
+  };
   for (float x = low.x; x < high.x; x += 1.0f) {
     const double begin_s = static_cast<double>(x - low.x) * seconds_a_pixel;
     const auto first = static_cast<std::size_t>(std::min(columns, begin_s / curves.step_s));
@@ -61,8 +103,16 @@ void draw_columns(const ProgramCurves& curves, const std::vector<float>& values,
       if (values[i] > values[at]) at = i;
     }
     if (at >= values.size() || !(values[at] > 0.0f)) continue;
-    const float height = std::max(1.0f, std::round(values[at] / top * (high.y - low.y)));
-    list->AddRectFilled({x, high.y - height}, {x + 1.0f, high.y}, curves.color[at] | 0xff000000u);
+    const std::uint32_t rgb = at < curves.color.size() ? curves.color[at] & 0xffffffu : 0xa0a0a0u;
+    const float top = high.y - height_of(values[at]);
+    list->AddRectFilled({x, top}, {x + 1.0f, high.y}, rgb | 0xff000000u);
+    float most = values[at];
+    if (curve.high != nullptr && at < curve.high->size()) {
+      most = std::max(most, (*curve.high)[at]);
+      list->AddRectFilled({x, high.y - height_of(most)}, {x + 1.0f, top}, rgb | kBandAlpha);
+    }
+    if (static_cast<double>(values[at]) > scale.top)
+      list->AddRectFilled({x, low.y}, {x + 1.0f, low.y + 2.0f}, kPeak);
   }
 }
 
@@ -71,13 +121,48 @@ void draw_tip(const PanelContext& context, const Curve& curve, double time_s) {
   std::string tip = clock_text(time_s);
   const auto column = static_cast<std::size_t>(time_s / curves.step_s);
   if (column < curve.values->size()) {
-    tip +=
-        fmt::format("\n{} {}", context.word(curve.name), figure(context, (*curve.values)[column]));
+    tip += fmt::format("\n{} {}", context.word(curve.name),
+                       figure(context, static_cast<double>((*curve.values)[column])));
+    const double high = curve.high != nullptr ? static_cast<double>((*curve.high)[column]) : 0.0;
+    if (high > 0.0)
+      tip +=
+          ", " + fmt::format(fmt::runtime(context.word(Text::kCurveHigh)), figure(context, high));
   }
   ImGui::SetTooltip("%s", tip.c_str());
 }
 
+/// Behind its name: the greatest, where the scale ends before that, the limit.
+std::string scale_text(const PanelContext& context, const Curve& curve, const CurveScale& scale) {
+  const auto words = [&](Text which, double value) {
+    return fmt::format(fmt::runtime(context.word(which)), figure(context, value));
+  };
+  std::string out = fmt::format("  <= {}", figure(context, scale.most));
+  if (curve.high != nullptr && scale.most_high > scale.most)
+    out += fmt::format(" ({})", words(Text::kCurveHigh, scale.most_high));
+  if (scale.is_clipped) out += ", " + words(Text::kCurvePeaks, scale.top);
+  if (curve.limit > 0.0) out += ", " + words(Text::kCurveLimit, curve.limit);
+  return out;
+}
+
 }  // namespace
+
+ColorBy color_of(CurveChoice curve) {
+  if (curve == CurveChoice::kNone) return ColorBy::kPlain;
+  return static_cast<ColorBy>(static_cast<int>(ColorBy::kRemovalRate) + static_cast<int>(curve) -
+                              static_cast<int>(CurveChoice::kRate));
+}
+
+bool is_offered(CurveChoice curve, const ProgramTimeline& timeline) {
+  const auto load = load_of(curve);
+  return !load || (needs_material(*load) ? timeline.has_forces : timeline.has_loads);
+}
+
+bool is_offered(ColorBy mode, const ProgramTimeline& timeline, const SceneSetup& setup) {
+  if (mode == ColorBy::kDeviation) return setup.tolerance_mm.has_value();
+  if (mode == ColorBy::kFeed || mode == ColorBy::kFeedPerTooth) return timeline.has_curves;
+  const auto load = load_of(mode);
+  return !load || (needs_material(*load) ? timeline.has_forces : timeline.has_loads);
+}
 
 void draw_curve(const PanelContext& context) {
   const double duration_s = context.shown.timeline->duration_s;
@@ -93,15 +178,22 @@ void draw_curve(const PanelContext& context) {
   seek_with_mouse(context, time_s);
   if (context.shown.curves == nullptr) return;
   const ProgramCurves& curves = *context.shown.curves;
-  const Curve curve = chosen_curve(curves, context.settings->curve);
+  const Curve curve = chosen_curve(context);
   std::string label = context.word(curve.name);
   if (curve.values->empty()) {
-    label += fmt::format(": {}", context.word(Text::kNoTeeth));
+    label += fmt::format(": {}", context.word(curve.why_none));
   } else {
-    const float top = *std::max_element(curve.values->begin(), curve.values->end());
-    if (top > 0.0f) {
-      draw_columns(curves, *curve.values, top, duration_s, low, high);
-      label += fmt::format("  <= {}", figure(context, top));
+    const std::span<const float> ends =
+        curve.high != nullptr ? std::span<const float>(*curve.high) : std::span<const float>();
+    const CurveScale scale = scale_of(*curve.values, ends, curve.limit);
+    if (scale.top > 0.0) {
+      draw_columns(curves, curve, scale, duration_s, low, high);
+      label += scale_text(context, curve, scale);
+    }
+    if (curve.limit > 0.0 && curve.limit <= scale.top) {
+      const auto share = static_cast<float>(curve.limit / scale.top);
+      const float y = std::round(high.y - share * (high.y - low.y));
+      list->AddRectFilled({low.x, y}, {high.x, y + 1.0f}, kLimit);
     }
     const double shown = std::clamp(context.shown.moment->time_s / duration_s, 0.0, 1.0);
     const float head_x = std::round(low.x + static_cast<float>(shown) * width);

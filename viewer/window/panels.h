@@ -171,6 +171,11 @@ struct PanelRoom {
 /// `has_curve`: there is a program, whose curve may be shown.
 PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale,
                      bool has_curve);
+/// What of curves and colours there may be for what is shown.
+bool is_offered(CurveChoice curve, const ProgramTimeline& timeline);
+bool is_offered(ColorBy mode, const ProgramTimeline& timeline, const SceneSetup& setup);
+/// The mode that colours by what a curve shows.
+ColorBy color_of(CurveChoice curve);
 /// Below the time slider, as wide. Clicks go to that time.
 void draw_curve(const PanelContext& context);
 inline constexpr float kCurveHeight_px = 30.0f;

@@ -37,7 +37,7 @@ Box box_of(const std::vector<PathVertex>& vertices) {
 /// Where the two differ. The path of a machine grows at its end: all before that is the same.
 Box change_between(const std::vector<PathVertex>& before, const std::vector<PathVertex>& after) {
   const auto same = [](const PathVertex& a, const PathVertex& b) {
-    return a.position_mm == b.position_mm && a.kind == b.kind;
+    return a.position_mm == b.position_mm && a.kind == b.kind && a.move == b.move;
   };
   const auto [old_end, new_end] =
       std::mismatch(before.begin(), before.end(), after.begin(), after.end(), same);
@@ -161,10 +161,10 @@ double PathStore::drawn_px() const {
 }
 
 void PathStore::choose_levels(std::vector<Box>* changed_mm) {
-  double tolerance_px = kTolerance_px;
+  double tolerance_px = is_by_move_ ? 0.0 : kTolerance_px;
   std::size_t drawn = drawn_vertices(tolerance_px);
   while (drawn > kDrawnVertices && tolerance_px < kMostTolerance_px) {
-    tolerance_px *= 2.0;
+    tolerance_px = std::max(kTolerance_px, 2.0 * tolerance_px);
     drawn = drawn_vertices(tolerance_px);
   }
   const bool is_smooth = drawn <= kSmoothVertices && drawn_px() <= kSmooth_px;
@@ -235,7 +235,7 @@ void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
                GL_DYNAMIC_DRAW);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(PathVertex), nullptr);
   glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(PathVertex),
-                         reinterpret_cast<const void*>(offsetof(PathVertex, kind)));
+                         reinterpret_cast<const void*>(sizeof(glm::vec3)));  // kind and move
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
   measure(chunk, values->vertices);
@@ -334,6 +334,13 @@ void PathStore::project_parts(Chunk* chunk) const {
   chunk->pixel_mm = pixel_mm;
 }
 
+void PathStore::set_by_move(bool is_by_move) {
+  if (is_by_move == is_by_move_) return;
+  is_by_move_ = is_by_move;
+  std::vector<Box> all;  // The whole picture changes.
+  choose_levels(&all);
+}
+
 void PathStore::project(const Projection& projection) {
   projection_ = projection;
   for (Chunk& chunk : chunks_) project(&chunk);
@@ -413,10 +420,14 @@ void PathStore::set_colors(const PathColors& colors) const {
     rgba[2 * kind] = colors.past[kind];
     rgba[2 * kind + 1] = colors.future[kind];
   }
-  if (is_wide()) return wide_.set_kind_colors(rgba);
+  if (is_wide()) {
+    wide_.set_kind_colors(rgba);
+    return wide_.set_move_colors(colors.moves);
+  }
   for (std::size_t i = 0; i < rgba.size(); ++i) {
     program_.set(("rgba[" + std::to_string(i) + "]").c_str(), rgba[i]);
   }
+  set_moves(program_, colors.moves);
 }
 
 void PathStore::set_is_past(bool is_past) const {

@@ -10,6 +10,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
+#include "viewer/window/move_paint.h"
 #include "viewer/window/screen_rect.h"
 #include "viewer/window/wide_lines.h"
 
@@ -19,6 +20,8 @@ namespace kerf {
 struct PathColors {
   std::array<glm::vec4, 3> past{};
   std::array<glm::vec4, 3> future{};
+  /// Of feed and planned segments, instead; the alphas above count for them, too.
+  MovePaint moves{};
   bool operator==(const PathColors&) const = default;
 };
 
@@ -65,6 +68,11 @@ class PathStore {
   /// Of what is past only so many segments are drawn, the newest, in kTailShades steps paler the
   /// older they are, and none of the future; 0: all of the path. The whole picture changes.
   void set_tail(std::size_t segments) { tail_ = segments; }
+
+  /// It is going to be drawn in the colours of its moves: of what is left out of a chunk nobody
+  /// would see the colour, so all of it is drawn while that is no more than kDrawnVertices. Beyond
+  /// that a line has the colour of the last of the moves that it stands for.
+  void set_by_move(bool is_by_move);
 
   void project(const Projection& projection);
   /// `may_smooth`: lines may be antialiased. Their faint rims have a depth as well. Blending has to
@@ -153,6 +161,7 @@ class PathStore {
   std::deque<std::shared_ptr<const PathChunk>> waiting_;
   std::uint64_t past_vertices_ = 0;
   std::size_t tail_ = 0;  ///< segments; 0: all
+  bool is_by_move_ = false;
   std::size_t gpu_bytes_ = 0;
   Box dropped_mm_;
   Projection projection_;

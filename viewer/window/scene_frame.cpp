@@ -155,6 +155,7 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   }
   scale_ = scale;
   shown_by_ = shown_by;
+  path_.set_by_move(paints_path());
   ScreenRect rect = step->changed.divided(divisor_);
   rect.extend(changed_rect(changed_mm_));
   if (is_kept_old_) rect = ScreenRect::whole(size_px_);

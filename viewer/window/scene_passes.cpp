@@ -85,8 +85,9 @@ std::size_t SceneRenderer::Impl::draw_patches(const ScreenRect& rect,
     if (section) program.set("section", glm::vec4(*section));
     return program;
   };
-  const VertexData data = SurfaceColors::needs(shown_by_);
-  colors_.bind(use(SurfaceColors::paint(shown_by_)), shown_by_, scale_);
+  const ColorBy by = surface_by();
+  const VertexData data = SurfaceColors::needs(by);
+  colors_.bind(use(SurfaceColors::paint(by)), by, scale_);
   std::size_t triangles = patches_.draw(rect, data, true);
   if (data != VertexData::kNone) {
     use(ScenePrograms::Paint::kOne);
@@ -153,7 +154,13 @@ void SceneRenderer::Impl::draw_lines(const ScreenRect& rect) const {
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   // The rims of smooth lines would leave pale borders in what is laid over them.
   const bool may_smooth = !is_glass();
-  path_.draw(rect, PathColors{colors(true), colors(false)}, may_smooth);
+  MovePaint moves;
+  if (paints_path()) {
+    moves = colors_.path_paint();
+    moves.ground = options_.is_dark ? kDarkRoom : kPaper;
+    moves.ground_share = 1.0f - kFutureShare;
+  }
+  path_.draw(rect, PathColors{colors(true), colors(false), moves}, may_smooth);
   const auto opacity = [this](SceneObject object) {
     return look(object).is_visible ? look(object).opacity : 0.0f;
   };

@@ -39,6 +39,9 @@ struct ObjectLook {
   bool operator==(const ObjectLook&) const = default;
 };
 
+/// What DrawOptions::color_by is about, where it goes by moves.
+enum class ColorTarget { kSurface, kBoth, kPath };
+
 struct DrawOptions {
   /// As far as its values have come, else by mesh. Only the mesh has colours, section and
   /// deviations.
@@ -47,10 +50,11 @@ struct DrawOptions {
   std::optional<SectionPlane> section;
   /// Beside `section`: what is taken away lies beyond both.
   std::optional<SectionPlane> section_beside;
-  /// Of the workpiece. kTool, kRemovalRate and kLineRange show the CutColors that came last, when
-  /// their mode is this one, and patches with MeshPatch::cut_by; kDeviation those with
-  /// deviation_mm. All else is drawn plainly: what is left of the blank darker, where patches tell.
+  /// Of the workpiece. Those that go by moves show the CutColors that came last, when their mode is
+  /// this one, and patches with MeshPatch::cut_by; kDeviation those with deviation_mm. All else is
+  /// drawn plainly: what is left of the blank darker, where patches tell.
   ColorBy color_by = ColorBy::kPlain;
+  ColorTarget color_on = ColorTarget::kSurface;
   /// Deviations up to this are green; from twice this on, the colour is full.
   double tolerance_mm = 0.05;
   bool is_dark = false;  ///< The background.

@@ -58,7 +58,7 @@ class SceneRenderer::Impl {
   Box fit_box() const;
   const Box& depth_box() const { return depth_box_; }
   std::vector<ColorLegendEntry> legend(const Measures& measures) const {
-    if (draw_mode_ != DrawMode::kMesh) return {};
+    if (draw_mode_ != DrawMode::kMesh && !paints_path()) return {};
     return colors_.legend(shown_by_, scale_, measures);
   }
   DrawMode drawn_mode() const { return draw_mode_; }
@@ -84,6 +84,14 @@ class SceneRenderer::Impl {
   void draw_seen_through(const ScreenRect& rect);
   void draw_glass();
   std::size_t gpu_bytes() const;
+  bool paints_path() const {
+    return options_.color_on != ColorTarget::kSurface && colors_.has_path(shown_by_);
+  }
+  /// What the workpiece is coloured by.
+  ColorBy surface_by() const {
+    return options_.color_on == ColorTarget::kPath && is_by_move(shown_by_) ? ColorBy::kPlain
+                                                                            : shown_by_;
+  }
   const ObjectLook& look(SceneObject object) const {
     return options_.looks[static_cast<std::size_t>(object)];
   }

@@ -120,13 +120,23 @@ std::vector<Field> choices() {
           [](const ViewSettings& s) { return static_cast<int>(s.flat); },
           [](int choice, ViewSettings* s) { s->flat = static_cast<FlatView>(choice); }),
       choice_field(
-          "curve", {"none", "removal-rate", "feed", "feed-per-tooth"},
+          "curve",
+          {"none", "removal-rate", "feed", "feed-per-tooth", "engagement", "chip", "force",
+           "torque", "power", "deflection"},
           [](const ViewSettings& s) { return static_cast<int>(s.curve); },
           [](int choice, ViewSettings* s) { s->curve = static_cast<CurveChoice>(choice); }),
       choice_field(
-          "color", {"plain", "height", "tool", "removal-rate", "line-range", "deviation"},
+          "color",
+          {"plain", "height", "tool", "removal-rate", "feed", "feed-per-tooth", "engagement",
+           "chip", "force", "torque", "power", "deflection", "line-range", "deviation"},
           [](const ViewSettings& s) { return static_cast<int>(s.drawing.color_by); },
           [](int choice, ViewSettings* s) { s->drawing.color_by = static_cast<ColorBy>(choice); }),
+      choice_field(
+          "color.on", {"surface", "both", "path"},
+          [](const ViewSettings& s) { return static_cast<int>(s.drawing.color_on); },
+          [](int choice, ViewSettings* s) {
+            s->drawing.color_on = static_cast<ColorTarget>(choice);
+          }),
       choice_field(
           "draw", {"mesh", "raycast", "csg"},
           [](const ViewSettings& s) { return static_cast<int>(s.drawing.draw_mode); },

@@ -1,6 +1,7 @@
 // viewer/window/settings.h - what the window remembers from one use to the next.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,24 @@ struct SectionChoice {
 };
 
 /// Which of ProgramCurves stands below the time slider.
-enum class CurveChoice { kNone, kRate, kFeed, kFeedPerTooth };
-inline constexpr int kCurveChoices = 4;
+enum class CurveChoice {
+  kNone,
+  kRate,
+  kFeed,
+  kFeedPerTooth,
+  kAngle,  ///< from here on CutLoadKind
+  kChip,
+  kForce,
+  kTorque,
+  kPower,
+  kBend
+};
+inline constexpr int kCurveChoices = 10;
+/// Nothing where it is no load.
+inline constexpr std::optional<CutLoadKind> load_of(CurveChoice curve) {
+  if (curve < CurveChoice::kAngle) return std::nullopt;
+  return static_cast<CutLoadKind>(static_cast<int>(curve) - static_cast<int>(CurveChoice::kAngle));
+}
 
 /// Of panels and background. kSystem: as the desktop asks for; dark where it does not say.
 enum class ThemeChoice { kDark, kLight, kSystem };

@@ -39,6 +39,7 @@ constexpr std::array kShortcuts{
     Shortcut{"m", U'm', 0, Action::kMeasure, Text::kMeasure},
     Shortcut{"z", U'z', 0, Action::kSection, Text::kSection},
     Shortcut{"v", U'v', 0, Action::kNextColors, Text::kNextColors},
+    Shortcut{"V", U'V', 0, Action::kNextColorOn, Text::kNextColorOn},
     Shortcut{"w", U'w', 0, Action::kWorkpiece, Text::kToggleWorkpiece},
     Shortcut{"h", U'h', 0, Action::kHolder, Text::kHolder},
     Shortcut{"e", U'e', 0, Action::kFixtures, Text::kFixtures},

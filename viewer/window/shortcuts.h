@@ -40,6 +40,7 @@ enum class Action {
   kMeasure,
   kSection,
   kNextColors,
+  kNextColorOn,
   kWorkpiece,
   kHolder,
   kFixtures,

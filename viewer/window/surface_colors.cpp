@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "viewer/deviation_colors.h"
+#include "viewer/window/texts.h"
 
 namespace kerf {
 namespace {
@@ -34,11 +35,20 @@ std::uint32_t packed(const glm::vec3& rgb) {
   return 0xff000000u | byte(rgb.z) << 16 | byte(rgb.y) << 8 | byte(rgb.x);
 }
 
+std::string text_of(const LegendRange& range, ColorBy mode, const Measures& measures) {
+  if (range.kind == LegendRange::Kind::kStraightDown) return text(Text::kStraightDown);
+  if (range.kind == LegendRange::Kind::kBeyondLimit)
+    return fmt::format("> {}: {}", measures.value(mode, range.from), text(Text::kBeyondLimit));
+  return range.from > 0 ? measures.values(mode, range.from, range.to)
+                        : fmt::format("<= {}", measures.value(mode, range.to));
+}
+
 /// A legend that came in mm, in what is shown.
-std::vector<ColorLegendEntry> in_units(std::vector<ColorLegendEntry> entries,
+std::vector<ColorLegendEntry> in_units(std::vector<ColorLegendEntry> entries, ColorBy mode,
                                        const Measures& measures) {
   for (ColorLegendEntry& entry : entries) {
     if (entry.mm3_per_s) entry.text = measures.rate_up_to(*entry.mm3_per_s);
+    if (entry.range) entry.text = text_of(*entry.range, mode, measures);
   }
   return entries;
 }
@@ -66,18 +76,8 @@ ColorBy SurfaceColors::available(ColorBy wanted) const {
 }
 
 VertexData SurfaceColors::needs(ColorBy mode) {
-  switch (mode) {
-    case ColorBy::kHeight:
-      return VertexData::kNone;
-    case ColorBy::kPlain:
-    case ColorBy::kTool:
-    case ColorBy::kRemovalRate:
-    case ColorBy::kLineRange:
-      return VertexData::kCutBy;
-    case ColorBy::kDeviation:
-      break;
-  }
-  return VertexData::kDeviation;
+  if (mode == ColorBy::kHeight) return VertexData::kNone;
+  return mode == ColorBy::kDeviation ? VertexData::kDeviation : VertexData::kCutBy;
 }
 
 ScenePrograms::Paint SurfaceColors::paint(ColorBy mode) {
@@ -116,13 +116,21 @@ void SurfaceColors::bind(const GlProgram& program, ColorBy mode, const ColorScal
   }
 }
 
+MovePaint SurfaceColors::path_paint() const {
+  MovePaint paint;
+  paint.texture = &texture_;
+  paint.count = move_count_;
+  paint.other = rgb_of(colors_->other);
+  return paint;
+}
+
 std::vector<ColorLegendEntry> SurfaceColors::legend(ColorBy mode, const ColorScale& scale,
                                                     const Measures& measures) const {
   std::vector<ColorLegendEntry> entries;
   const VertexData data = needs(mode);
   if (mode == ColorBy::kPlain) return entries;
   if (data == VertexData::kCutBy) {
-    return colors_ ? in_units(colors_->legend, measures) : entries;
+    return colors_ ? in_units(colors_->legend, mode, measures) : entries;
   }
   const Stops& stops = stops_of(mode);
   if (data == VertexData::kDeviation) {

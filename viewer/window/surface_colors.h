@@ -8,6 +8,7 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/scene.h"
+#include "viewer/window/move_paint.h"
 #include "viewer/window/scene_programs.h"
 #include "viewer/window/units.h"
 
@@ -46,6 +47,13 @@ class SurfaceColors {
   /// Of an available mode; from low to high for scales. Empty for kPlain.
   std::vector<ColorLegendEntry> legend(ColorBy mode, const ColorScale& scale,
                                        const Measures& measures) const;
+
+  /// They are for the path as well, and go by this mode.
+  bool has_path(ColorBy mode) const {
+    return is_by_move(mode) && colors_ && colors_->mode == mode && colors_->is_of_path;
+  }
+  /// Where has_path(); until the next set().
+  MovePaint path_paint() const;
 
   std::size_t gpu_bytes() const { return gpu_bytes_; }
 

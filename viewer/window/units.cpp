@@ -65,4 +65,48 @@ std::string Measures::rate(double mm3_per_s) const {
 
 std::string Measures::rate_up_to(double mm3_per_s) const { return "<= " + rate(mm3_per_s); }
 
+std::pair<double, std::string> Measures::unit_of(ColorBy mode) const {
+  switch (mode) {
+    case ColorBy::kRemovalRate:
+      return is_inch() ? std::pair(1 / kMm3PerInch3, std::string("in³/s"))
+                       : std::pair(1.0, std::string("mm³/s"));
+    case ColorBy::kFeed:
+      return {1 / mm_per_unit(), fmt::format("{}/min", name())};
+    case ColorBy::kFeedPerTooth:
+    case ColorBy::kChip:
+    case ColorBy::kBend:
+      return {1 / mm_per_unit(), name()};
+    case ColorBy::kAngle:
+      return {1.0, "°"};
+    case ColorBy::kForce:
+      return {1.0, "N"};
+    case ColorBy::kTorque:
+      return {1.0, "Nm"};
+    case ColorBy::kPower:
+      return {1.0, "kW"};
+    default:
+      return {1.0, {}};
+  }
+}
+
+/// Three digits; no exponents, which 10 km/min would have.
+std::string Measures::value(ColorBy mode, double value) const {
+  const auto [factor, unit] = unit_of(mode);
+  const double shown = value * factor;
+  const int digits =
+      shown > 0 ? std::clamp(2 - static_cast<int>(std::floor(std::log10(shown))), 0, 6) : 0;
+  std::string figure = fixed(shown, digits);
+  if (digits > 0) {
+    figure.erase(figure.find_last_not_of('0') + 1);
+    if (figure.back() == '.') figure.pop_back();
+  }
+  return unit == "°" ? figure + unit : fmt::format("{} {}", figure, unit);
+}
+
+std::string Measures::values(ColorBy mode, double from, double to) const {
+  const std::string low = value(mode, from);
+  const std::string figure = low.substr(0, low.size() - unit_of(mode).second.size());
+  return fmt::format("{}.. {}", figure.ends_with(' ') ? figure : figure + " ", value(mode, to));
+}
+
 }  // namespace kerf

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "base/length_unit.h"
+#include "viewer/scene.h"
 
 namespace kerf {
 
@@ -41,10 +43,16 @@ class Measures {
   std::string rate(double mm3_per_s) const;
   /// "<= 120 mm³/s", "<= 0.00732 in³/s"
   std::string rate_up_to(double mm3_per_s) const;
+  /// Of what a mode colours by (kRemovalRate to kBend), with its unit: "0.12 mm", "350 N".
+  std::string value(ColorBy mode, double value) const;
+  /// "100 .. 200 N"
+  std::string values(ColorBy mode, double from, double to) const;
 
  private:
   constexpr bool is_inch() const { return unit_ == LengthUnit::kInch; }
   std::string feed_figure(double mm_per_min) const;
+  /// What a mode's value is multiplied by, and the unit that it then has.
+  std::pair<double, std::string> unit_of(ColorBy mode) const;
 
   LengthUnit unit_;
 };

@@ -21,12 +21,19 @@ constexpr std::array kObjects{Text::kWorkpiece,    Text::kCutter,  Text::kHolder
                               Text::kBlank,        Text::kFrames,  Text::kFindings,
                               Text::kMachineParts, Text::kFixtures};
 static_assert(kObjects.size() == kSceneObjectCount);
-constexpr std::array kColorModes{Text::kColorPlain,     Text::kColorHeight,
-                                 Text::kColorTool,      Text::kColorRemovalRate,
-                                 Text::kColorLineRange, Text::kColorDeviation};
+constexpr std::array kColorNames{
+    Text::kColorPlain,     Text::kColorHeight,       Text::kColorTool,  Text::kColorRemovalRate,
+    Text::kColorFeed,      Text::kColorFeedPerTooth, Text::kColorAngle, Text::kColorChip,
+    Text::kColorForce,     Text::kColorTorque,       Text::kColorPower, Text::kColorBend,
+    Text::kColorLineRange, Text::kColorDeviation};
+static_assert(kColorNames.size() == kColorModes);
 
-constexpr std::array kCurves{Text::kCurveNone, Text::kCurveRate, Text::kFeed, Text::kFeedPerTooth};
+constexpr std::array kCurves{
+    Text::kCurveNone, Text::kCurveRate,  Text::kFeed,        Text::kFeedPerTooth, Text::kCurveAngle,
+    Text::kCurveChip, Text::kCurveForce, Text::kCurveTorque, Text::kCurvePower,   Text::kCurveBend};
 static_assert(kCurves.size() == kCurveChoices);
+
+constexpr std::array kColorTargets{Text::kColorOnSurface, Text::kColorOnBoth, Text::kColorOnPath};
 
 constexpr std::array kDrawModes{Text::kDrawMesh, Text::kDrawRaycast, Text::kDrawCsg};
 
@@ -96,16 +103,37 @@ void draw_line_range(const PanelContext& context) {
   if (is_changed) context.commands->push(color_command(*context.settings, *context.state));
 }
 
+/// Of a machine that is watched the path has no colours.
+void draw_color_targets(const PanelContext& context) {
+  DrawOptions& drawing = context.settings->drawing;
+  if (!is_by_move(drawing.color_by) || !context.shown.timeline->has_curves) return;
+  for (std::size_t i = 0; i < kColorTargets.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    const auto target = static_cast<ColorTarget>(i);
+    if (ImGui::RadioButton(context.word(kColorTargets[i]), target == drawing.color_on))
+      drawing.color_on = target;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s  [V]", context.word(Text::kColorOn));
+  }
+}
+
+Text why_no_colors(const PanelContext& context) {
+  const ColorBy mode = context.settings->drawing.color_by;
+  const auto load = load_of(mode);
+  if (!load || is_offered(mode, *context.shown.timeline, *context.shown.setup))
+    return Text::kNoColorsYet;
+  return needs_material(*load) ? Text::kNeedsMaterial : Text::kNeedsEngagement;
+}
+
 void draw_colors(const PanelContext& context) {
   if (!header(context, Text::kColors, true)) return;
   DrawOptions& drawing = context.settings->drawing;
   ImGui::SetNextItemWidth(-1.0f);
   const auto mode = static_cast<std::size_t>(drawing.color_by);
-  if (ImGui::BeginCombo("##colors", context.word(kColorModes[mode]))) {
-    for (std::size_t i = 0; i < kColorModes.size(); ++i) {
-      const bool needs_design = static_cast<ColorBy>(i) == ColorBy::kDeviation;
-      if (needs_design && !context.shown.setup->tolerance_mm) continue;
-      if (!ImGui::Selectable(context.word(kColorModes[i]), i == mode) || i == mode) continue;
+  if (ImGui::BeginCombo("##colors", context.word(kColorNames[mode]))) {
+    for (std::size_t i = 0; i < kColorNames.size(); ++i) {
+      if (!is_offered(static_cast<ColorBy>(i), *context.shown.timeline, *context.shown.setup))
+        continue;
+      if (!ImGui::Selectable(context.word(kColorNames[i]), i == mode) || i == mode) continue;
       drawing.color_by = static_cast<ColorBy>(i);
       context.commands->push(color_command(*context.settings, *context.state));
     }
@@ -125,8 +153,9 @@ void draw_colors(const PanelContext& context) {
           std::clamp(value * measures.mm_per_unit(), kMinTolerance_mm, kMaxTolerance_mm);
     }
   }
+  draw_color_targets(context);
   if (drawing.color_by != ColorBy::kPlain && context.legend.empty()) {
-    ImGui::TextColored(theme::kDim, "%s", context.word(Text::kNoColorsYet));
+    ImGui::TextColored(theme::kDim, "%s", context.word(why_no_colors(context)));
   }
   draw_legend(context);
 }
@@ -141,6 +170,7 @@ void draw_curve_choice(const PanelContext& context) {
   }
   for (std::size_t i = 0; i < kCurves.size(); ++i) {
     const auto curve = static_cast<CurveChoice>(i);
+    if (!is_offered(curve, *context.shown.timeline)) continue;
     if (ImGui::Selectable(context.word(kCurves[i]), curve == chosen)) chosen = curve;
   }
   ImGui::EndCombo();

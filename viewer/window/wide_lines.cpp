@@ -28,6 +28,7 @@ void WideLines::use(const Projection& projection, float towards_eye) const {
   program_.set("step", 1);
   program_.set("is_smooth", 1);
   program_.set("single", glm::ivec2(-1));
+  set_moves(program_, {});
 }
 
 void WideLines::set_kind_colors(std::span<const glm::vec4, 6> rgba) const {

@@ -8,13 +8,15 @@
 
 #include "viewer/gl_objects.h"
 #include "viewer/orbit_camera.h"
+#include "viewer/window/move_paint.h"
 
 namespace kerf {
 
 /// OpenGL's own lines have one pixel in its core profile, which is too fine for fine displays.
 /// These are rectangles with round ends, which the card makes of the same buffers: of 16 bytes a
-/// vertex, position (3 floats) and 4 bytes, which are the segment's kind or colour and count at its
-/// end. Several times the work of plain lines, so those are drawn where a pixel is wide enough.
+/// vertex, position (3 floats) and 4 bytes, which are the segment's kind and move, or its colour,
+/// and count at its end. Several times the work of plain lines, so those are drawn where a pixel is
+/// wide enough.
 class WideLines {
  public:
   static Result<WideLines> create();
@@ -25,6 +27,8 @@ class WideLines {
   void use(const Projection& projection, float towards_eye) const;
   /// Of kinds, past and future by turns: PathColors.
   void set_kind_colors(std::span<const glm::vec4, 6> rgba) const;
+  /// With kinds: feeds have the colours of their moves.
+  void set_move_colors(const MovePaint& paint) const { set_moves(program_, paint); }
   void set_past(bool is_past) const { program_.set("is_past", is_past ? 1 : 0); }
   /// Colours of the vertices, RGBA.
   void set_own_colors(float opacity) const;

@@ -44,6 +44,10 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
   settings_.drawing.draw_mode = options.draw_mode.value_or(remembered_mode_);
   remembered_units_ = settings_.units;
   settings_.units = options.units.value_or(remembered_units_);
+  remembered_color_ = settings_.drawing.color_by;
+  settings_.drawing.color_by = options.color_by.value_or(remembered_color_);
+  remembered_color_on_ = settings_.drawing.color_on;
+  settings_.drawing.color_on = options.color_on.value_or(remembered_color_on_);
   settings_.section.is_on = options.section != SectionKind::kNone;
   settings_.section.is_quarter = options.section == SectionKind::kQuarter;
   // Where nothing is remembered they would come every time.
@@ -90,6 +94,10 @@ void Window::Impl::remember_settings() {
   if (options_.draw_mode == settings_.drawing.draw_mode)
     settings_.drawing.draw_mode = remembered_mode_;
   if (options_.units == settings_.units) settings_.units = remembered_units_;
+  if (options_.color_by == settings_.drawing.color_by)
+    settings_.drawing.color_by = remembered_color_;
+  if (options_.color_on == settings_.drawing.color_on)
+    settings_.drawing.color_on = remembered_color_on_;
   // Nobody is left to be told; the next start has the settings of this one.
   static_cast<void>(save_settings(options_.settings_file, settings_));
 }

@@ -29,6 +29,8 @@ struct WindowOptions {
   bool is_local = true;               ///< false: local drawing is off, whatever is remembered
   std::optional<DrawMode> draw_mode;  ///< Instead of the one that is remembered, which stays so.
   std::optional<LengthUnit> units;    ///< As `draw_mode`.
+  std::optional<ColorBy> color_by;    ///< As `draw_mode`.
+  std::optional<ColorTarget> color_on;
   SectionKind section = SectionKind::kNone;  ///< That the workpiece is first seen in.
   float scale = 0.0f;          ///< Of letters and panels, 1 to 4; 0: that of the display.
   std::string picture_folder;  ///< Where screenshots go; empty: the current folder.

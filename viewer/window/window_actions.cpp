@@ -123,8 +123,10 @@ void Window::Impl::act_on_panels(Action action) {
       settings_.shows_counters = !settings_.shows_counters;
       break;
     case Action::kNextCurve:
-      settings_.curve =
-          static_cast<CurveChoice>((static_cast<int>(settings_.curve) + 1) % kCurveChoices);
+      do {
+        settings_.curve =
+            static_cast<CurveChoice>((static_cast<int>(settings_.curve) + 1) % kCurveChoices);
+      } while (!is_offered(settings_.curve, *shown_.timeline));
       break;
     case Action::kLocalDrawing:
       settings_.drawing.is_local = !settings_.drawing.is_local;
@@ -319,12 +321,17 @@ void Window::Impl::act_on_view(Action action) {
       wants_fit_ = true;
       break;
     case Action::kNextColors: {
-      // Without a design there is nothing to deviate from.
-      const int modes =
-          static_cast<int>(ColorBy::kDeviation) + (shown_.setup->tolerance_mm ? 1 : 0);
       ColorBy& mode = settings_.drawing.color_by;
-      mode = static_cast<ColorBy>((static_cast<int>(mode) + 1) % modes);
+      do {
+        mode = static_cast<ColorBy>((static_cast<std::size_t>(mode) + 1) % kColorModes);
+      } while (!is_offered(mode, *shown_.timeline, *shown_.setup));
       commands_.push(color_command(settings_, state_));
+      break;
+    }
+    case Action::kNextColorOn: {
+      constexpr int kTargets = static_cast<int>(ColorTarget::kPath) + 1;
+      ColorTarget& target = settings_.drawing.color_on;
+      target = static_cast<ColorTarget>((static_cast<int>(target) + 1) % kTargets);
       break;
     }
     case Action::kNextDrawMode: {

@@ -141,6 +141,8 @@ class Window::Impl {
   Diagnostics settings_faults_;
   DrawMode remembered_mode_ = DrawMode::kMesh;  // before WindowOptions::draw_mode
   LengthUnit remembered_units_ = LengthUnit::kMm;
+  ColorBy remembered_color_ = ColorBy::kPlain;
+  ColorTarget remembered_color_on_ = ColorTarget::kSurface;
 
   Platform platform_;
   GLFWwindow* window_ = nullptr;

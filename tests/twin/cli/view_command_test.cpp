@@ -115,6 +115,54 @@ TEST_F(ViewFiles, FaultsOfTheCommandLineComeAtOnce) {
   EXPECT_EQ(listing(folder_.path()), "part.ngc");
 }
 
+TEST_F(ViewFiles, ColoursOfForcesWantAMaterial) {
+  EXPECT_EQ(err_of({program_, "--png", "x.png", "--color", "force"}, 2),
+            "kerf: error: --color: force is worked out of the material, which nobody has said\n"
+            "  hint: --material NAME says it; docs/cutting-forces.md lists them\n");
+  EXPECT_EQ(err_of({program_, "--png", "x.png", "--color", "chip"}, 2),
+            "kerf: error: --color: chip is not measured\n"
+            "  hint: --engagement or --material NAME measures it\n");
+  EXPECT_NE(
+      err_of({program_, "--png", "x.png", "--color", "blue"}, 2).find("'blue' is not allowed"),
+      std::string::npos);
+  EXPECT_NE(err_of({program_, "--png", "x.png", "--color-on", "path"}, 2).find("--color-on"),
+            std::string::npos);
+  EXPECT_NE(err_of({program_, "--png", "x.png", "--draw", "raycast", "--color", "tool"}, 2)
+                .find("raycast shows no colours"),
+            std::string::npos);
+  EXPECT_NE(err_of({program_, "--spindle-power", "2", "--png", "x.png"}, 2).find("--material"),
+            std::string::npos);
+  EXPECT_NE(err_of({program_, "--material", "cheese", "--png", "x.png"}, 2).find("cheese"),
+            std::string::npos);
+}
+
+/// Path and surface, with a legend on them; with the same findings as `kerf run` the window's tests
+/// have to do.
+TEST_F(ViewFiles, ColoursOfForcesAreInThePicture) {
+  const std::vector<std::string> shop{program_,
+                                      "--stock",
+                                      "box:-10,-10,-6:40,30,0",
+                                      "--tool",
+                                      "1=flat:6:teeth=3",
+                                      "--tool",
+                                      "2=drill:5:118:teeth=2",
+                                      "--cell",
+                                      "0.2",
+                                      "--material",
+                                      "aluminium"};
+  const auto seen = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = shop;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return picture(arguments, 0, false);
+  };
+  const Picture plain = seen({}), surface = seen({"--color", "force"});
+  EXPECT_EQ(last_.err, "");
+  EXPECT_GT(different_pixels(plain, surface), 1000U);
+  const Picture path = seen({"--color", "force", "--color-on", "path"});
+  EXPECT_GT(different_pixels(plain, path), 100U);
+  EXPECT_GT(different_pixels(surface, path), 500U);
+}
+
 TEST_F(ViewFiles, WhatCannotBeReadIsNamed) {
   const std::string missing = folder_.file("none.ngc");
   EXPECT_EQ(err_of({missing, "--png", folder_.file("x.png")}, 4),

@@ -11,6 +11,7 @@
 #include "tests/interp_bridge/program_test_support.h"
 #include "twin/findings/finding_json.h"
 #include "twin/machine/kinematics/machine_kinematics.h"
+#include "twin/playback/load_record.h"
 #include "twin/session/session.h"
 
 namespace kerf {
@@ -96,6 +97,7 @@ class LoadProgram : public testing::Test {
     Outcome opened = Outcome::kFailed;
     const std::unique_ptr<Session> session = Session::open(options_, said, opened);
     ASSERT_TRUE(session);
+    if (options_.cutting.is_wanted()) session->log_engagement(false);
     const Outcome ran = session->run({}, said);
     const Report& report = session->report();
 
@@ -106,8 +108,13 @@ class LoadProgram : public testing::Test {
     EXPECT_EQ(loaded->time_model, report.time_model);
     EXPECT_EQ(loaded->blank.origin, report.stock->origin);
     EXPECT_EQ(loaded->blank.description, report.stock->description);
+    // Who shows it wants both.
+    if (!loaded->player.blank->sheet()) loaded->player.blank->keep_cut_ids(true);
+    loaded->player.measures_loads = options_.cutting.is_wanted();
     Player player(std::move(loaded->player), {});
     ASSERT_TRUE(player.wait(player.play(std::numeric_limits<double>::infinity()), kLong));
+    loads_ = player.loads();
+    uses_ = report.tools;
     const auto end = player.state();
     EXPECT_EQ(end->stop, PlayerStop::kProgramEnd);
     EXPECT_EQ(end->stock->digest(), report.stock->digest);
@@ -134,6 +141,8 @@ class LoadProgram : public testing::Test {
   Diagnostics diagnostics_;
   Outcome outcome_ = Outcome::kUsageError;
   std::size_t compared_findings_ = 0;
+  std::shared_ptr<const LoadRecord> loads_;
+  std::vector<ToolUse> uses_;
   std::set<FindingId> compared_ids_;
 };
 
@@ -193,6 +202,74 @@ TEST_F(LoadProgram, EndsAsADryRunDoes) {
   give_blank();
   expect_as_session();
   EXPECT_EQ(compared_findings_, 3U) << "two rapids, and a spindle that no S word makes turn";
+}
+
+/// Slots and half slots at S2000, F600, by tools with teeth, in a material of the spindle's limits:
+/// what is told of forces needs how tools are engaged, and that which move has cut each cell.
+TEST_F(LoadProgram, OfForcesItTellsWhatADryRunDoes) {
+  std::vector<std::pair<int, std::string>> commands{{1, "SELECT_TOOL(1)"},
+                                                    {1, "CHANGE_TOOL(1)"},
+                                                    {1, "SET_SPINDLE_SPEED(0, 2000.0000)"},
+                                                    {1, "START_SPINDLE_CLOCKWISE(0)"},
+                                                    {1, "SET_FEED_RATE(600.0000)"}};
+  for (int row = 0; row < 6; ++row) {
+    const double y = 6 + 3.5 * row;
+    commands.emplace_back(10 * row + 2, to("STRAIGHT_TRAVERSE", -6, y, 5));
+    commands.emplace_back(10 * row + 3, to("STRAIGHT_TRAVERSE", -6, y, -3));
+    commands.emplace_back(10 * row + 4, to("STRAIGHT_FEED", 20, y, -3));
+    commands.emplace_back(10 * row + 5, to("STRAIGHT_FEED", 30, y + 1, -3));
+    commands.emplace_back(10 * row + 6, to("STRAIGHT_FEED", 46, y, -3));
+    commands.emplace_back(10 * row + 7, to("STRAIGHT_TRAVERSE", 46, y, 5));
+  }
+  commands.emplace_back(90, "PROGRAM_END()");
+  write(listing(commands));
+  give_blank();
+  options_.tools.clear();
+  options_.tools.push_back(
+      std::move(parse_tool_argument("1=flat:6:teeth=3:flute=10:holder=20x30:stickout=30").value()));
+  Material steel;
+  steel.name = "steel";
+  steel.kc11_n_per_mm2 = {1400, 2000, 3000};
+  steel.mc = 0.2;
+  options_.cutting.material = steel;
+  options_.cutting.spindle_power_kw = 0.2;
+  options_.cutting.most_bend_mm = 0.005;
+  options_.cutting.wants_climb = true;
+  for (const bool planned : {false, true}) {
+    options_.timeline.planner.with_path = planned;
+    expect_as_session();
+    for (const FindingId id : {FindingId::kOverPower, FindingId::kDeflection})
+      EXPECT_TRUE(compared_ids_.contains(id)) << planned;
+    ASSERT_TRUE(loads_);
+    ASSERT_EQ(uses_.size(), 1u);
+    ASSERT_TRUE(uses_[0].loads);
+    const ToolLoads& told = *uses_[0].loads;
+    const auto most = [&](LoadKind kind) {
+      const std::vector<float> values = loads_->by_motion(kind);
+      return values.empty() ? 0.0
+                            : static_cast<double>(*std::max_element(values.begin(), values.end()));
+    };
+    EXPECT_NEAR(most(LoadKind::kForce), told.force_n.most(), 1e-4 * told.force_n.most());
+    EXPECT_NEAR(most(LoadKind::kPower), told.power_kw.most(), 1e-4 * told.power_kw.most());
+    EXPECT_NEAR(most(LoadKind::kChip), told.chip_mm.most(), 1e-6);
+    EXPECT_NEAR(most(LoadKind::kBend), told.bend_mm.most(), 1e-4 * told.bend_mm.most());
+    // A slot first; then 3.5 of the diameter's 6 mm, from which the angle follows.
+    EXPECT_NEAR(most(LoadKind::kAngle), 180, 1);
+    const std::vector<float> angles = loads_->by_motion(LoadKind::kAngle);
+    EXPECT_GT(std::count_if(angles.begin(), angles.end(),
+                            [](float angle) { return std::abs(angle - 99.6f) < 8; }),
+              3)
+        << "acos(1 - 3.5 / 3) = 99.6 degrees";
+    EXPECT_TRUE(std::any_of(angles.begin(), angles.end(), [](float angle) { return angle == 0; }));
+  }
+}
+
+/// Its sound twin: nothing is measured where nobody has asked for it.
+TEST_F(LoadProgram, WithoutAMaterialNothingIsMeasured) {
+  write(slots());
+  give_blank();
+  expect_as_session();
+  EXPECT_FALSE(loads_);
 }
 
 TEST_F(LoadProgram, WithAGuessedBlankToo) {

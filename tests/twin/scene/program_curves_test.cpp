@@ -88,6 +88,40 @@ TEST(ProgramCurves, OfRateFeedAndTeethInTheColoursOfTools) {
   EXPECT_EQ(whole->feed_per_tooth_mm.back(), 0.0f);
 }
 
+TEST(ProgramCurves, LoadsAreInTheColumnsOfTheOthersWithTheirLimits) {
+  const auto track = test::track_of(two_cuts().list());
+  const auto record = std::make_shared<LoadRecord>(track);
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < track->size(); ++i) {
+    const Vec3 way = track->to_mm(i) - track->from_mm(i);
+    if (way.x > 29 && !track->is_traverse(i)) cut = i;
+  }
+  CutLoad load;
+  load.start_s = track->start_s(cut);
+  load.seconds = track->end_s(cut) - load.start_s;
+  load.set(LoadKind::kPower, 1.5, 2.5);
+  record->on_load(load);
+  CuttingWish wish;
+  wish.spindle_power_kw = 2;
+  CurveMaker maker(track, {{1, "ball 6"}}, nullptr);
+  maker.show_loads(record, wish);
+  const std::vector<float> removed(track->size(), 1.0f);
+  const auto whole = maker.make(track->size(), removed, kNever);
+  ASSERT_TRUE(whole);
+  const SceneLoadCurve& power = whole->loads[static_cast<std::size_t>(CutLoadKind::kPower)];
+  EXPECT_EQ(power.limit, 2);
+  ASSERT_EQ(power.nominal.size(), whole->color.size());
+  ASSERT_EQ(power.high.size(), whole->color.size());
+  const auto column = static_cast<std::size_t>((load.start_s + load.seconds / 2) / whole->step_s);
+  EXPECT_EQ(power.nominal[column], 1.5f);
+  EXPECT_EQ(power.high[column], 2.5f);
+  EXPECT_EQ(power.nominal.front(), 0);
+  EXPECT_EQ(power.nominal.back(), 0);
+  const SceneLoadCurve& force = whole->loads[static_cast<std::size_t>(CutLoadKind::kForce)];
+  EXPECT_TRUE(force.nominal.empty());
+  EXPECT_EQ(force.limit, 0);
+}
+
 TEST(ProgramCurves, AnEmptyProgramHasNone) {
   CurveMaker maker(test::track_of({}), {}, nullptr);
   EXPECT_FALSE(maker.wants(0, CurveMaker::Clock::now()));

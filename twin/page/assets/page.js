@@ -163,7 +163,7 @@ function makeView(canvas) {
   const markColors = buffer(new Uint8Array(marked.flatMap(([f]) => [...severityColor[f.severity], 255])));
 
   const middle = [0, 1, 2].map((i) => (box[0][i] + box[1][i]) / 2);
-  const state = { yaw: 0.62, pitch: 0.6, zoom: 1, target: middle.slice(), axis: -1, share: 0.5, chosen: -1 };
+  const state = { yaw: 0.62, pitch: 0.6, zoom: 1, target: middle.slice(), axis: -1, share: 0.5, chosen: -1, spot: null };
 
   // Rows of the eye's frame: right, up, towards the eye.
   function frame() {
@@ -232,6 +232,19 @@ function makeView(canvas) {
         gl.drawArrays(gl.POINTS, chosen, 1);
       }
     }
+    if (state.spot) drawSpot();
+  }
+  // Where a table or a curve has led.
+  const spotPlace = gl.createBuffer(), spotColor = buffer(new Uint8Array([150, 30, 160, 255]));
+  function drawSpot() {
+    gl.disable(gl.DEPTH_TEST);
+    gl.uniform1i(uKind, 3);
+    gl.bindBuffer(gl.ARRAY_BUFFER, spotPlace);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(state.spot), gl.DYNAMIC_DRAW);
+    bind(aPlace, spotPlace, 3, gl.FLOAT, false);
+    bind(aColor, spotColor, 4, gl.UNSIGNED_BYTE, true);
+    gl.uniform1f(uSize, 16 * (window.devicePixelRatio || 1));
+    gl.drawArrays(gl.POINTS, 0, 1);
   }
   let due = false;
   function redraw() {
@@ -263,7 +276,7 @@ function makeView(canvas) {
     goTo(place) { state.target = place.slice(); state.zoom = Math.max(state.zoom, 3); redraw(); },
     picture(name, width, height) {
       const kept = { ...state, target: state.target.slice() };
-      Object.assign(state, { zoom: 1, target: middle.slice(), axis: -1, chosen: -1 });
+      Object.assign(state, { zoom: 1, target: middle.slice(), axis: -1, chosen: -1, spot: null });
       [state.yaw, state.pitch] = views[name];
       canvas.width = width; canvas.height = height;
       draw(width, height);
@@ -302,32 +315,65 @@ function makeView(canvas) {
 
 // ---- findings
 let view = null;
+function showPlace(file, line, place) {
+  const program = part("program");
+  program.replaceChildren();
+  const source = line > 0 && data.sources[file];
+  if (source) {
+    program.append(file + ":" + line + "\n");
+    for (let n = Math.max(1, line - 4); n <= line + 4; ++n) {
+      if (source[n] === undefined) continue;
+      const row = document.createElement("span");
+      if (n === line) row.className = "at";
+      row.textContent = String(n).padStart(6) + "  " + source[n] + (n === line ? "" : "\n");
+      program.append(row);
+    }
+  }
+  if (!view) return;
+  if (place) view.goTo(place); else view.redraw();
+}
 function choose(number) {
   const finding = data.findings[number];
   root.querySelectorAll(".findings button").forEach((b, i) => b.setAttribute("aria-current", String(i === number)));
   const button = root.querySelectorAll(".findings button")[number];
   if (button) button.scrollIntoView({ block: "nearest" });
-  const program = part("program");
-  program.replaceChildren();
-  const source = finding.line > 0 && data.sources[finding.file];
-  if (source) {
-    program.append(finding.file + ":" + finding.line + "\n");
-    for (let line = finding.line - 4; line <= finding.line + 4; ++line) {
-      if (source[line] === undefined) continue;
-      const row = document.createElement("span");
-      if (line === finding.line) row.className = "at";
-      row.textContent = String(line).padStart(6) + "  " + source[line] + (line === finding.line ? "" : "\n");
-      program.append(row);
-    }
-  }
-  if (view) {
-    view.state.chosen = number;
-    if (finding.place) view.goTo(finding.place); else view.redraw();
+  if (view) { view.state.chosen = number; view.state.spot = null; }
+  showPlace(finding.file, finding.line, finding.place);
+}
+// A line of a table, a column of a curve: [file, line, place].
+function chooseSpot([file, line, place]) {
+  root.querySelectorAll(".findings button").forEach((b) => b.setAttribute("aria-current", "false"));
+  if (view) { view.state.chosen = -1; view.state.spot = place; }
+  showPlace(data.files[file], line, place);
+}
+// ---- curves: a column is where the mouse is in the picture's own units
+function columnAt(svg, event) {
+  const box = svg.getBoundingClientRect(), edge = 8, width = svg.viewBox.baseVal.width;
+  const share = ((event.clientX - box.left) / box.width * width - edge) / (width - 2 * edge), count = Number(svg.dataset.columns);
+  return Math.min(count - 1, Math.max(0, Math.floor(share * count)));
+}
+function showPart() { (part("split") || part("program")).scrollIntoView({ block: "nearest" }); }
+function beginCurves() {
+  const curves = [...root.querySelectorAll("svg.curve")];
+  for (const svg of curves) {
+    if (data.columns.length !== Number(svg.dataset.columns)) continue;
+    svg.classList.add("leads");
+    svg.addEventListener("click", (event) => {
+      const column = columnAt(svg, event), spot = data.columns[column];
+      const x = 8 + (column + 0.5) * (svg.viewBox.baseVal.width - 16) / data.columns.length;
+      curves.forEach((other) => other.querySelector(".now").setAttribute("d", `M${x.toFixed(1)} 20V90`));
+      if (spot[1] > 0) { chooseSpot(spot); showPart(); }
+    });
   }
 }
 
 function begin() {
   root.querySelectorAll(".findings button").forEach((button, i) => button.addEventListener("click", () => choose(i)));
+  root.querySelectorAll(".spot").forEach((button) => button.addEventListener("click", () => {
+    chooseSpot(data.spots[Number(button.dataset.spot)]);
+    showPart();
+  }));
+  beginCurves();
   if (!data.mesh) return;
   const canvas = document.createElement("canvas"), holder = part("view");
   canvas.tabIndex = 0;

@@ -69,7 +69,7 @@ void CutLoads::note(Trouble trouble, const Part& part, double value, const Value
   worst = {true, value, range, worst.seconds, part.source, part.start_s, part.from_mm, extra};
 }
 
-void CutLoads::take(const Part& part) {
+void CutLoads::take(const Part& part, LoadListener* listener) {
   if (tool_ == nullptr || part.way.seconds <= 0) return;
   const bool is_engaged = part.look.is_engaged();
   asked_ = {part.start_s,
@@ -81,8 +81,21 @@ void CutLoads::take(const Part& part) {
             !is_engaged,
             {},
             {}};
-  weigh(part);
+  load_ = {};
+  feed_s_ += part.way.seconds;
+  if (is_engaged) {
+    close_air();
+    take_engaged(part);
+  } else {
+    take_air(part);
+  }
   if (hearer_) hearer_(asked_);
+  if (!is_engaged || listener == nullptr) return;
+  load_.start_s = part.start_s;
+  load_.seconds = part.way.seconds;
+  const double angle_deg = part.look.angle_rad * kDegrees;
+  load_.set(LoadKind::kAngle, angle_deg, angle_deg);
+  listener->on_load(load_);
 }
 
 void CutLoads::take_unknown(double start_s, double seconds) {
@@ -96,10 +109,7 @@ void CutLoads::take_unknown(double start_s, double seconds) {
   hearer_(part);
 }
 
-void CutLoads::weigh(const Part& part) {
-  feed_s_ += part.way.seconds;
-  if (!part.look.is_engaged()) return take_air(part);
-  close_air();
+void CutLoads::take_engaged(const Part& part) {
   tool_->cut_s += part.way.seconds;
   judge_way(part);
   if (tool_->teeth == 0 || part.rpm <= 0) return;
@@ -146,14 +156,17 @@ void CutLoads::take_plunge(const Part& part, double feed_mm) {
   ToolLoads& loads = *tool_->loads;
   const DrillingCut cut{2 * tool_->radius_mm, tool_->teeth, tool_->point_deg,
                         feed_mm * tool_->teeth, part.rpm};
-  loads.speed_m_per_min.add(kPi * cut.diameter_mm * part.rpm / 1000, part.way.seconds, part.source);
+  loads.speed_m_per_min.add(kPi * cut.diameter_mm * part.rpm / 1000, part.way.seconds, part.source,
+                            part.from_mm);
   if (!wish_.material) {
-    loads.chip_mm.add(feed_mm * std::sin(cut.point_deg / 2 / kDegrees), part.way.seconds,
-                      part.source);
+    const double chip_mm = feed_mm * std::sin(cut.point_deg / 2 / kDegrees);
+    loads.chip_mm.add(chip_mm, part.way.seconds, part.source, part.from_mm);
+    load_.set(LoadKind::kChip, chip_mm, chip_mm);
     return;
   }
   const DrillingLoad load = drilling_load(*wish_.material, cut, tool_->traits.rake_deg);
-  loads.chip_mm.add(load.chip_mm, part.way.seconds, part.source);
+  loads.chip_mm.add(load.chip_mm, part.way.seconds, part.source, part.from_mm);
+  load_.set(LoadKind::kChip, load.chip_mm, load.chip_mm);
   add_forces(part, load.thrust_n, load.torque_nm, load.torque_nm, load.power_w);
 }
 
@@ -164,9 +177,10 @@ void CutLoads::take_cut(const Part& part, double feed_mm) {
   const MillingCut cut{feed_mm * std::cos(part.way.down_rad), std::clamp(look.entry_rad, 0.0, kPi),
                        std::clamp(look.exit_rad, 0.0, kPi), look.deep_mm, part.rpm};
   const Chip chip = chip_of(*tool_->profile, cut);
-  loads.chip_mm.add(chip.most_mm, part.way.seconds, part.source);
+  loads.chip_mm.add(chip.most_mm, part.way.seconds, part.source, part.from_mm);
+  load_.set(LoadKind::kChip, chip.most_mm, chip.most_mm);
   const double speed = kPi * look.effective_mm * part.rpm / 1000;
-  loads.speed_m_per_min.add(speed, part.way.seconds, part.source);
+  loads.speed_m_per_min.add(speed, part.way.seconds, part.source, part.from_mm);
   if (!wish_.material) return;
   if (chip.most_mm < kLeastChip_mm.high) note(kThin, part, -chip.most_mm, {}, chip.most_mm);
   if (chip.most_mm < kLeastChip_mm.low) note(kThinest, part, -chip.most_mm, {}, chip.most_mm);
@@ -191,7 +205,7 @@ void CutLoads::add_forces(const Part& part, const ValueRange& force_n, const Val
   ToolLoads& loads = *tool_->loads;
   loads.has_forces = true;
   const auto add = [&](LoadSpread& spread, ValueRange& most, const ValueRange& range) {
-    spread.add(range, part.way.seconds, part.source, most);
+    spread.add(range, part.way.seconds, part.source, most, part.from_mm);
   };
   asked_.is_known = true;
   asked_.power_w = power_w;
@@ -200,6 +214,9 @@ void CutLoads::add_forces(const Part& part, const ValueRange& force_n, const Val
   add(loads.force_n, loads.force_most_n, force_n);
   add(loads.torque_nm, loads.torque_most_nm, torque_nm);
   add(loads.power_kw, loads.power_most_kw, power_kw);
+  load_.set(LoadKind::kForce, force_n.nominal, force_n.high);
+  load_.set(LoadKind::kTorque, torque_mean_nm.nominal, torque_mean_nm.high);
+  load_.set(LoadKind::kPower, power_kw.nominal, power_kw.high);
   if (wish_.spindle_power_kw > 0 && power_kw.high > wish_.spindle_power_kw)
     note(kPower, part, power_kw.nominal, power_kw);
   // A spindle's own mass takes what a tooth takes for a moment.
@@ -222,13 +239,14 @@ void CutLoads::add_bend(const Part& part, const ValueRange& force_n, const Value
   ToolLoads& loads = *tool_->loads;
   loads.has_bend = true;
   if (bend.nominal > loads.bend_mm.most()) loads.bend_most_mm = bend;
-  loads.bend_mm.add(bend.nominal, part.way.seconds, part.source);
+  loads.bend_mm.add(bend.nominal, part.way.seconds, part.source, part.from_mm);
+  load_.set(LoadKind::kBend, bend.nominal, bend.high);
   const double wall_mm = std::abs(carbide * wall_n.nominal);
   if (wall_mm > loads.wall_mm.most()) {
     loads.wall_most_mm = {(wall_n.low < 0 ? steel : least) * wall_n.low, carbide * wall_n.nominal,
                           (wall_n.high < 0 ? least : steel) * wall_n.high};
   }
-  loads.wall_mm.add(wall_mm, part.way.seconds, part.source);
+  loads.wall_mm.add(wall_mm, part.way.seconds, part.source, part.from_mm);
   if (wish_.most_bend_mm > 0 && bend.high > wish_.most_bend_mm)
     note(kBend, part, bend.nominal, bend);
 }

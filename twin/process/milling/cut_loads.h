@@ -18,6 +18,7 @@
 #include "twin/process/cut_load_part.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/engagement.h"
+#include "twin/process/load_listener.h"
 
 namespace kerf {
 
@@ -40,7 +41,8 @@ class CutLoads {
     double rpm = 0;              ///< 0: the spindle stands
     double most_mm_per_min = 0;  ///< the speed that its motion reaches
   };
-  void take(const Part& part);
+  /// `listener`: is told what it was like; null: nobody is.
+  void take(const Part& part, LoadListener* listener = nullptr);
   /// Of a part that nobody has measured.
   void take_unknown(double start_s, double seconds);
   /// Is told what each part asks of the spindle.
@@ -100,7 +102,7 @@ class CutLoads {
     int tool = 0;
   };
 
-  void weigh(const Part& part);
+  void take_engaged(const Part& part);
   void note(Trouble trouble, const Part& part, double value, const ValueRange& range,
             double extra = 0);
   void take_air(const Part& part);
@@ -121,6 +123,7 @@ class CutLoads {
   Tool* tool_ = nullptr;
   CutLoadHearer hearer_;
   CutLoadPart asked_;  ///< by the present part
+  CutLoad load_;       ///< of it
   double feed_s_ = 0, air_s_ = 0;
   AirWay air_;
   std::vector<AirWay> longest_air_;  ///< five at most, the longest first

@@ -105,7 +105,7 @@ void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
     if (move.bounds_parts && report.removed_mm3 <= 0 && report.depth_mm <= 0 &&
         part.way.length_mm > kLeastRemoving_cells * stock_.cell_mm())
       part.look = {};
-    loads_.take(part);
+    loads_.take(part, site_.loads);
   }
   // Some moves are always on their way: those that have arrived are let go of in numbers.
   if (load_parts_taken_ < std::min(kPartsTaken, load_parts_.size())) return;

@@ -358,12 +358,15 @@ void MillingStage::note_depth(const Motion& m, const TimedStep& step) {
 /// The programmed move, or what the machine makes of it.
 void MillingStage::push(const Motion& m, const TimedStep& step, bool spindle_off) {
   if (site_.progress.stop_now()) return;  // while its contacts were looked for
+  std::uint64_t id = site_.first_id.value_or(0);
   if (path_.empty()) {
+    if (site_.first_id) next_id_ = id;
     push_moves(m, step, spindle_off);
     return;
   }
   for_each_piece(m, step, path_, [&](const Motion& piece, const TimedStep& part) {
     if (site_.progress.is_stopped()) return;
+    if (site_.first_id) next_id_ = id++;
     if (!divide(piece, part)) return;
     push_moves(piece, part, spindle_off);
   });

@@ -97,6 +97,46 @@ TEST_F(CutLoadsTest, ForcesAreThoseOfTheModel) {
   EXPECT_EQ(told(), "");
 }
 
+class Heard final : public LoadListener {
+ public:
+  void on_load(const CutLoad& load) override { loads.push_back(load); }
+  void restart() override { loads.clear(); }
+  std::vector<CutLoad> loads;
+};
+
+/// Who shows loads place by place is told what the report has, with the ends of ranges; the torque
+/// is the mean of a turn, which over-torque goes by.
+TEST_F(CutLoadsTest, ListenersHearTheSameOfEachPart) {
+  run(in_steel(), "flat:10:teeth=4:helix=45:flute=20:holder=20x30:stickout=30", slot(4), 0);
+  Heard heard;
+  loads_->take({slot(4), {40, 6, 0}, {0, 9}, 12.5, Vec3(0), 2000, 400}, &heard);
+  loads_->take({{}, {40, 6, 0}, {0, 10}, 18.5, Vec3(0), 2000, 400}, &heard);  // in the air
+  ASSERT_EQ(heard.loads.size(), 1u);
+  const CutLoad& load = heard.loads[0];
+  EXPECT_EQ(load.start_s, 12.5);
+  EXPECT_EQ(load.seconds, 6);
+  const MillingModel model(*in_steel().material, EdgeProfile::cylinder(5, 0.2), {4, kPi / 4}, {});
+  const MillingLoad wanted = model.load_of({0.05, 0, kPi, 4, 2000});
+  EXPECT_NEAR(load.of(LoadKind::kAngle).nominal, 180, 1e-9);
+  EXPECT_NEAR(load.of(LoadKind::kChip).nominal, 0.05, 1e-9);
+  EXPECT_NEAR(load.of(LoadKind::kForce).nominal, wanted.force_n.nominal, 1e-6);
+  EXPECT_NEAR(load.of(LoadKind::kForce).high, wanted.force_n.high, 1e-6);
+  EXPECT_NEAR(load.of(LoadKind::kTorque).nominal, wanted.torque_mean_nm.nominal, 1e-9);
+  EXPECT_NEAR(load.of(LoadKind::kPower).high, wanted.power_w.high / 1000, 1e-9);
+  EXPECT_NEAR(load.of(LoadKind::kBend).nominal, loads_->loads_of(1)->bend_most_mm.nominal, 1e-12);
+  EXPECT_NEAR(load.of(LoadKind::kBend).high, loads_->loads_of(1)->bend_most_mm.high, 1e-12);
+}
+
+TEST_F(CutLoadsTest, WithoutTeethListenersHearOfTheAngleAlone) {
+  run(in_steel(), "flat:10", slot(4), 0);
+  Heard heard;
+  loads_->take({slot(4), {40, 6, 0}, {0, 9}, 0, Vec3(0), 2000, 400}, &heard);
+  ASSERT_EQ(heard.loads.size(), 1u);
+  EXPECT_EQ(heard.loads[0].of(LoadKind::kAngle).nominal, 180);
+  EXPECT_EQ(heard.loads[0].of(LoadKind::kChip).nominal, 0);
+  EXPECT_EQ(heard.loads[0].of(LoadKind::kForce).nominal, 0);
+}
+
 TEST_F(CutLoadsTest, NothingIsKnownOfToolsWithoutTeeth) {
   run(in_steel(), "flat:10", slot(4));
   EXPECT_EQ(loads_of(1), nullptr);
