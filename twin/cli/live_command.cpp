@@ -313,7 +313,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
 /// Round after round, as the window asks for them, or LinuxCNC loads programs.
 int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
                  std::stop_source& stop, LiveWindow& window) {
-  const LiveClock begun = LiveClock::now();
+  const LiveClock::time_point begun = LiveClock::now();
   const double for_s = request.options.for_s;
   // Its pins stay, whatever is linked to them.
   std::optional<SharedSource> shared;
