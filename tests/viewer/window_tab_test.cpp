@@ -71,7 +71,8 @@ class WindowTabTest : public WindowTest {
     EXPECT_TRUE(turn_until([&] {
       const Picture picture = window_->read();
       return picture.width_px == width_px && picture.height_px == height_px;
-    })) << "is " << window_->read().width_px << "x" << window_->read().height_px;
+    })) << "is "
+        << window_->read().width_px << "x" << window_->read().height_px;
   }
 };
 

@@ -310,6 +310,43 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   return exit_code(outcome, session->report(), diagnostics);
 }
 
+/// Until the next round begins, or somebody stops: the pins say that nothing is vouched for.
+int wait_for_program(SharedSource& shared, const Surroundings& around, double for_s, bool is_quiet,
+                     std::stop_source& stop) {
+  const LiveClock::time_point begun = LiveClock::now();
+  std::uint32_t told = 0;
+  const std::string waiting = tr("waiting for a program: LinuxCNC has loaded none");
+  const auto tell = [&](const std::string& line) {
+    if (!is_quiet) print_text(stderr, trf("kerf: {}\n", line));
+    flush_console();
+    SceneUpdate update;
+    auto moment = std::make_shared<Moment>();
+    moment->notice = line;
+    update.moment = std::move(moment);
+    around.window->mailbox().publish(std::move(update));
+  };
+  if (around.loaded->state().program.empty()) tell(waiting);
+  while (!stop.stop_requested()) {
+    const double passed_s = std::chrono::duration<double>(LiveClock::now() - begun).count();
+    if (for_s > 0 && passed_s > for_s) break;
+    AxisSample sample;
+    BorrowedSource(shared).next(sample, std::chrono::milliseconds(100));
+    HalStatus pins;
+    pins.stale = true;
+    around.hal->show(pins);
+    const LoadedState state = around.loaded->state();
+    if (state.result && std::exchange(told, state.number) != state.number) {
+      tell(line_of(*state.result));
+    }
+    for (const ViewerCommand& command : around.window->commands().take()) {
+      if (std::holds_alternative<CloseCommand>(command) && !around.window->lost) {
+        stop.request_stop();
+      }
+    }
+  }
+  return kExitGood;
+}
+
 /// Round after round, as the window asks for them, or LinuxCNC loads programs.
 int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
                  std::stop_source& stop, LiveWindow& window) {
@@ -338,9 +375,13 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
       std::stop_source round;
       const std::stop_callback ends(stop.get_token(), [&round] { round.request_stop(); });
       window.begin_round(round);
-      code = watch(request, std::move(source), round, around);
-      // A program that cannot be followed, as the dry run says: until another one comes, none is.
-      if (loaded && !around.has_begun && request.options.program) window.follow("");
+      // Without a program and a blank there is nothing to be watched yet.
+      const bool has_work = !loaded || request.options.program || request.options.blank;
+      if (has_work) code = watch(request, std::move(source), round, around);
+      // Nor is there along a program that cannot be followed, until another one comes.
+      if (loaded && !(has_work && around.has_begun)) {
+        code = wait_for_program(*shared, around, for_s, request.quiet, round);
+      }
     }
     std::optional<LiveRequest> next = window.take_next();
     if (!next || stop.stop_requested()) return code;

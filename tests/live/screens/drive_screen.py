@@ -54,11 +54,11 @@ def main():
     machine = drive.Machine.__new__(drive.Machine)
     result = {"errors": []}
     for _ in range(300):
-        try:
+        try:  # until LinuxCNC has made its status, and its tools
             machine.__init__()
             machine.stat.poll()
             break
-        except drive.linuxcnc.error:
+        except (drive.linuxcnc.error, SystemError):
             time.sleep(0.2)
     if drive.wait_until("task", machine.task_is_up, 60) and drive.wait_until(
         "kerf", lambda: pin("kerf.alive") == "TRUE", 60

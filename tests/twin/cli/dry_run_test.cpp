@@ -25,8 +25,8 @@ constexpr const char* kNote =
         "time_s": null, "message": "no M2"})";
 
 TEST(DryRunResult, CountsErrorsAndWarnings) {
-  const std::optional<DryRunResult> result = dry_run_result(
-      "nc/part.ngc", report(std::string(kError) + "," + kWarning + "," + kNote));
+  const std::optional<DryRunResult> result =
+      dry_run_result("nc/part.ngc", report(std::string(kError) + "," + kWarning + "," + kNote));
   ASSERT_TRUE(result);
   EXPECT_TRUE(result->is_done);
   EXPECT_FALSE(result->is_good());

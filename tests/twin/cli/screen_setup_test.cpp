@@ -95,9 +95,9 @@ TEST(ScreenSetup, WhatItDoesNotUnderstandIsRefused) {
                     "EMBED_TAB_COMMAND = kerf shadow -x {XID}\n")
                 .find("there is a tab with kerf already"),
             std::string::npos);
-  EXPECT_NE(refusal("[DISPLAY]\nDISPLAY = axis\n# kerf setup: begin\n")
-                .find("are not there once each"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("[DISPLAY]\nDISPLAY = axis\n# kerf setup: begin\n").find("are not there once each"),
+      std::string::npos);
   EXPECT_NE(refusal("[DISPLAY]\nDISPLAY = axis\nGEOMETRY = XYZ \\\n")
                 .find("the end of [DISPLAY] is not clear"),
             std::string::npos);
