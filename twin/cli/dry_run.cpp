@@ -127,7 +127,7 @@ Result<DryRun> DryRun::start(const std::string& program, const WrittenOptions& o
   run.folder_ = folder;
   std::vector<std::string> words{"run"};
   for (std::string& word : run_words(options)) words.push_back(std::move(word));
-  words.insert(words.end(), {"--quiet", "--json=" + folder + "/report.json", "--", program});
+  words.insert(words.end(), {"--quiet", "--json=" + folder + "/report.json", program});
   const IdlePriority idle;
   Result<BoundedProcess> process = BoundedProcess::start(words, folder + "/said", {});
   if (!process) return Error{process.error()};

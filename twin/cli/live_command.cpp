@@ -22,9 +22,9 @@
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/live_console.h"
 #include "twin/cli/live_window.h"
-#include "twin/cli/loaded_program.h"
 #include "twin/cli/page_output.h"
 #include "twin/cli/scheduling.h"
+#include "twin/cli/screen_program.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
 #include "twin/config/make_source.h"
@@ -74,7 +74,7 @@ class HalObserver final : public LiveObserver {
  public:
   /// `loaded`: null where the program that LinuxCNC has loaded is not followed. `program`: that of
   /// this session; empty: none.
-  HalObserver(LiveObserver& console, HalSource& hal, const LoadedProgram* loaded,
+  HalObserver(LiveObserver& console, HalSource& hal, const ScreenProgram* loaded,
               std::string program, bool is_quiet)
       : console_(console),
         hal_(hal),
@@ -112,7 +112,7 @@ class HalObserver final : public LiveObserver {
   void show_loaded(const LiveStatus& status, HalStatus& pins) {
     if (status.remaining_s >= 0) pins.time_left_s = status.remaining_s;
     if (loaded_ == nullptr) return;
-    const LoadedState state = loaded_->state();
+    const ScreenProgramState state = loaded_->state();
     if (!state.result || state.program.empty()) return;
     const DryRunResult& result = *state.result;
     const bool is_followed = state.program == program_;
@@ -137,19 +137,19 @@ class HalObserver final : public LiveObserver {
 
   LiveObserver& console_;
   HalSource& hal_;
-  const LoadedProgram* loaded_;
+  const ScreenProgram* loaded_;
   const std::string program_;
   const bool is_quiet_;
   LiveObserver* all_ = this;
   LiveView* view_ = nullptr;
-  std::uint32_t told_ = 0;  ///< LoadedState::number
+  std::uint32_t told_ = 0;  ///< ScreenProgramState::number
 };
 
 /// What goes on from one session to the next.
 struct Surroundings {
   LiveWindow* window = nullptr;           ///< null: one session, without a window
   HalSource* hal = nullptr;               ///< of a LinuxCNC: where the pins are
-  const LoadedProgram* loaded = nullptr;  ///< null: not followed
+  const ScreenProgram* loaded = nullptr;  ///< null: not followed
   bool is_first = true;                   ///< of the sessions
   bool has_begun = false;                 ///< out: it could be watched
 };
@@ -334,7 +334,7 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
     HalStatus pins;
     pins.stale = true;
     around.hal->show(pins);
-    const LoadedState state = around.loaded->state();
+    const ScreenProgramState state = around.loaded->state();
     if (state.result && std::exchange(told, state.number) != state.number) {
       tell(line_of(*state.result));
     }
@@ -354,7 +354,7 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
   const double for_s = request.options.for_s;
   // Its pins stay, whatever is linked to them.
   std::optional<SharedSource> shared;
-  std::optional<LoadedProgram> loaded;
+  std::optional<ScreenProgram> loaded;
   Surroundings around;
   around.window = &window;
   around.hal = dynamic_cast<HalSource*>(source.get());

@@ -1,4 +1,4 @@
-#include "twin/cli/loaded_program.h"
+#include "twin/cli/screen_program.h"
 
 #include <utility>
 
@@ -11,7 +11,7 @@ constexpr std::chrono::milliseconds kPeriod{100};
 
 }  // namespace
 
-LoadedProgram::LoadedProgram(std::string kerf_status, std::string nml_file, WrittenOptions options,
+ScreenProgram::ScreenProgram(std::string kerf_status, std::string nml_file, WrittenOptions options,
                              std::function<bool()> runs,
                              std::function<bool(const std::string&)> on_load)
     : file_(std::move(kerf_status), std::move(nml_file)),
@@ -20,17 +20,17 @@ LoadedProgram::LoadedProgram(std::string kerf_status, std::string nml_file, Writ
       on_load_(std::move(on_load)),
       thread_([this](const std::stop_token& stop) { watch(stop); }) {}
 
-LoadedProgram::~LoadedProgram() {
+ScreenProgram::~ScreenProgram() {
   thread_.request_stop();
   thread_.join();
 }
 
-LoadedState LoadedProgram::state() const {
+ScreenProgramState ScreenProgram::state() const {
   const std::lock_guard lock(mutex_);
   return state_;
 }
 
-void LoadedProgram::watch(const std::stop_token& stop) {
+void ScreenProgram::watch(const std::stop_token& stop) {
   FileWatch on_disk;
   std::optional<DryRun> run;
   std::string followed;  // by the watch
