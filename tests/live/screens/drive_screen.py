@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """drive_screen.py PROGRAM: beside a LinuxCNC with a screen, what its user does: switches on, homes, opens the program, waits
 for kerf's leave, starts it, waits for its end, and closes the screen. Writes screen.json:
+  load_to_off_s seconds from opening the program until the leave for the one before is gone
   load_to_ok_s  seconds from opening the program to kerf.program-ok; null: it never came
   dry_run_s     seconds until a kerf run of the program was there
   findings, time_left_s   the pins when it was loaded
@@ -72,6 +73,7 @@ def main():
         machine.command.wait_complete()
         begin = time.monotonic()
         machine.command.program_open(own)
+        result["load_to_off_s"] = since(begin, lambda: pin("kerf.program-ok") != "TRUE", 5)
         result["dry_run_s"] = since(begin, lambda: pids("kerf run .*part.ngc"), 10)
         result["load_to_ok_s"] = since(begin, lambda: pin("kerf.program-ok") == "TRUE", 30)
         result["findings"] = pin("kerf.findings")
@@ -79,8 +81,10 @@ def main():
         time.sleep(4)
         picture("loaded.png")
         begin = time.monotonic()
+        machine.command.mode(drive.linuxcnc.MODE_AUTO)  # a screen may have left it
+        machine.command.wait_complete()
         machine.command.auto(drive.linuxcnc.AUTO_RUN, 0)
-        drive.wait_until("the start", lambda: machine.poll().interp_state != drive.linuxcnc.INTERP_IDLE, 5)
+        result["started"] = drive.wait_until("the start", lambda: machine.poll().interp_state != drive.linuxcnc.INTERP_IDLE, 5)
         time.sleep(4)
         picture("running.png")
         result["program_s"] = since(begin, machine.is_done, 120)
