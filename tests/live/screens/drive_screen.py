@@ -66,7 +66,12 @@ def main():
     ):
         time.sleep(2)
         show_tab()
-        machine.switch_on_and_home()
+        for _ in range(5):  # a screen that is still starting may switch off again
+            machine.switch_on_and_home()
+            if machine.poll().task_state == drive.linuxcnc.STATE_ON:
+                break
+            time.sleep(2)
+        machine.errors.clear()
         result["homed"] = drive.wait_until("home", machine.is_homed, 60)
         result["ok_before"] = pin("kerf.program-ok")
         machine.command.mode(drive.linuxcnc.MODE_AUTO)
