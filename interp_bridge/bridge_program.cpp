@@ -199,6 +199,12 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   if (machine.start != std::array<double, 9>{}) {
     out.insert(out.end(), {"--start", fmt::format("{}", fmt::join(machine.start, " "))});
   }
+  if (machine.first_line > 0) {
+    out.insert(out.end(), {"--first-line", std::to_string(machine.first_line)});
+  }
+  if (machine.there) {
+    out.insert(out.end(), {"--there", fmt::format("{}", fmt::join(*machine.there, " "))});
+  }
   if (answer_probe_) out.insert(out.end(), {"--answers", std::to_string(kAnswerFd)});
   if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
   if (!machine.tool_change_position.empty()) {

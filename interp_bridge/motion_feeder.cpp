@@ -46,6 +46,9 @@ std::optional<int> compensating_tool(std::string block) {
   return std::atoi(block.c_str() + digits);
 }
 
+/// What is taken for the block of a place where the machine stands.
+constexpr BlockWords kNamesAll{.named = 7};
+
 }  // namespace
 
 MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
@@ -109,6 +112,7 @@ bool MotionFeeder::take(const CanonicalCommand& command, SourceRef source) {
   source_ = source;
   if (options_.places.followed || (options_.places.has_blocks && fold_.needs_offset_blocks())) {
     follow_block(command.name);
+    if (std::exchange(stands_there_, false)) fold_.set_block(&kNamesAll);
   }
   if (command.spelling.empty() ||
       command.spelling.size() == canonical_spelling(command.name).size()) {

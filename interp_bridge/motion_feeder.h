@@ -74,6 +74,9 @@ class MotionFeeder {
   void take_wait() { fold_.halt(); }
   /// M190 P: true if it is QtPlasmaC's, and the material is another now.
   bool take_material_change(double number, SourceRef source);
+  /// The traverse that comes next goes to where the machine stands: on all axes, whatever its block
+  /// names.
+  void take_here() { stands_there_ = true; }
   /// The block is about to be run, and may be one whose effect shows only later (stores()).
   void take_store(SourceRef source);
   /// M100 to M199: true if it is one that SignalOptions names, and a step has been made of it.
@@ -138,6 +141,7 @@ class MotionFeeder {
   BlockReader blocks_;
   RepeatWatch repeats_;
   bool refused_ = false;  ///< a wild number
+  bool stands_there_ = false;
   SourceRef source_;
 
   /// What hangs on a probing move of which nothing is known.

@@ -73,6 +73,12 @@ struct InterpreterSetup {
   std::string working_folder;  ///< relative paths of the INI; empty: the program's folder
   std::string parameter_path;  ///< var file, copied before it is used; empty: none
   std::string startup_code;    ///< run before the program
+  /// The program is begun at this line, as LinuxCNC's "run from here" does it: what comes before is
+  /// read, and not done. kerf-interp only. 0: it is run from its beginning.
+  std::uint32_t first_line = 0;
+  /// Where the machine stands then: X Y Z A B C U V W of the workpiece, mm and degrees. Axes that
+  /// the line does not name stay there. Nothing: where the program would be.
+  std::optional<std::array<double, 9>> there;
 };
 
 /// Whether a program is read as a QtPlasmaC machine would: its materials, what its filter makes of

@@ -39,6 +39,7 @@ enum Code : std::uint8_t {
                    ///< a STRAIGHT_PROBE has it, nine numbers. kerf-interp waits for an Answer
   kStore = 0x7b,   ///< the block at `line` is about to be run, and may be one of those whose effect
                    ///< shows only later: G28.1, G30.1, G10
+  kHere = 0x7c,    ///< the STRAIGHT_TRAVERSE that follows is no move: there the machine stands
   kEnd = 0x79,     ///< the last record: 1 if the program ended by M2, M30 or %; blocks read
 };
 constexpr bool is_text(std::uint8_t code) {

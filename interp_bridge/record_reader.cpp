@@ -185,6 +185,9 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     case records::kAt:
       place_ = {file_, head.line};
       return true;
+    case records::kHere:
+      feeder_.take_here();
+      return true;
     case records::kStore:
       feeder_.take_store({file_, head.line});
       return true;

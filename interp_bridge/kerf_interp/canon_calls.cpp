@@ -4,6 +4,7 @@
 #include <canon.hh>
 #include <cstdarg>
 #include <cstdio>
+#include <vector>
 
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/kerf_interp/recording.h"
@@ -102,9 +103,13 @@ void USE_TOOL_LENGTH_OFFSET(EmcPose offset) {
   const Pose p = pose(offset);
   const World::OffsetSource source = world().offset_source(p, recording().block_text());
   world().set_tool_offset(p);
-  record(CanonicalName::kUseToolLengthOffset,
-         {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], static_cast<double>(source.origin),
-          static_cast<double>(source.tool)});
+  std::vector<double>& values = recording().length_offset;
+  values.assign(p.begin(), p.end());
+  values.insert(values.end(),
+                {static_cast<double>(source.origin), static_cast<double>(source.tool)});
+  recording().length_offset_line = recording().line_now();
+  recording().records->numbers(code(CanonicalName::kUseToolLengthOffset),
+                               recording().length_offset_line, values.data(), values.size());
 }
 
 // ---- Motion

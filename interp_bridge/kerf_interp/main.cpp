@@ -9,6 +9,7 @@
 #include <cstring>
 #include <interp_base.hh>
 #include <interp_return.hh>
+#include <optional>
 #include <vector>
 
 #include "interp_bridge/canonical.h"
@@ -90,6 +91,9 @@ class Runner {
       return report(0);
     }
     if (!succeeded(interpreter_.open(options.program.c_str()))) return report(0);
+    first_line_ = options.first_line;
+    there_ = options.there;
+    records_.leave_out_deeds(first_line_ > 1);
     return run_blocks();
   }
   std::uint64_t blocks() const { return blocks_; }
@@ -127,8 +131,36 @@ class Runner {
       } else if (level > 0) {
         recording().find_file();
       }
+      if (first_line_ > 0 && level == 0 && line_ + 1 >= first_line_) begin_here();
       if (++blocks_ % kBlocksPerLook == 0) look_at_clock();
     }
+  }
+
+  /// What comes before the first line has been read. LinuxCNC takes the machine for where it stands
+  /// then (emctaskmain.cc: programStartLine), and knows the modes; of tools it knows what M6 said.
+  void begin_here() {
+    records_.leave_out_deeds(false);
+    World& world = recording().world;
+    Pose at{};
+    for (std::size_t axis = 0; axis < at.size(); ++axis) {
+      const double unit = is_length(axis) ? world.unit_mm() : 1.0;
+      at[axis] = there_ ? (*there_)[axis] / unit : world.position(axis);
+    }
+    // Of no line: LinuxCNC would lose a feed of the same block as M61.
+    if (const int row = world.loaded_row(); row > 0) {
+      records_.numbers(static_cast<std::uint8_t>(CanonicalName::kChangeToolNumber), 0,
+                       {static_cast<double>(row), static_cast<double>(world.row(row).toolno)});
+    }
+    if (const std::vector<double>& offset = recording().length_offset; !offset.empty()) {
+      records_.numbers(static_cast<std::uint8_t>(CanonicalName::kUseToolLengthOffset),
+                       recording().length_offset_line, offset.data(), offset.size());
+    }
+    records_.numbers(records::kHere, first_line_, {});
+    records_.numbers(static_cast<std::uint8_t>(CanonicalName::kStraightTraverse), first_line_,
+                     at.data(), at.size());
+    world.move_to(at);
+    interpreter_.synch();
+    first_line_ = 0;
   }
 
   /// No call comes of what a block keeps for later, so that it is told before it is run.
@@ -185,7 +217,9 @@ class Runner {
   RecordWriter& records_;
   int status_ = INTERP_OK;
   std::uint64_t blocks_ = 0;
-  int line_ = 0;  ///< of the block read last
+  int line_ = 0;        ///< of the block read last
+  int first_line_ = 0;  ///< still to come; 0: none is
+  std::optional<Pose> there_;
   std::vector<Caller> callers_;
   Clock::time_point flushed_ = Clock::now();
 };

@@ -31,6 +31,11 @@ constexpr const char* kUsage =
     "                          where the machine goes before M6, mm and degrees (it stays)\n"
     "  --start \"X Y .. W\"      where the machine stands: nine numbers, mm and degrees (all 0)\n"
     "  --startup BLOCK         run first\n"
+    "  --first-line N          reads what comes before line N without doing it, as LinuxCNC's\n"
+    "                          \"run from here\" does\n"
+    "  --there \"X Y .. W\"      where the machine stands then: nine numbers of the workpiece, mm "
+    "and\n"
+    "                          degrees (where the program would be)\n"
     "  --answers FD            asks where probing moves end, and reads the answers there\n"
     "  --torch FILE            QtPlasmaC's materials and the values of pins (README.md)\n";
 
@@ -90,12 +95,17 @@ bool read_torch(const std::string& path, World& world) {
   return file.eof() || fault(path + ": " + std::strerror(errno));
 }
 
-bool read_start(const std::string& text, World& world) {
+bool read_pose(const std::string& text, const char* option, Pose& at) {
   std::istringstream numbers(text);
-  Pose at{};
   for (double& number : at) numbers >> number;
   std::string more;
-  if (!numbers || numbers >> more) return fault("--start: '" + text + "' is not nine numbers");
+  if (numbers && !(numbers >> more)) return true;
+  return fault(std::string(option) + ": '" + text + "' is not nine numbers");
+}
+
+bool read_start(const std::string& text, World& world) {
+  Pose at{};
+  if (!read_pose(text, "--start", at)) return false;
   world.stand_at(at);
   return true;
 }
@@ -133,7 +143,9 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     kStart,
     kStartup,
     kTorch,
-    kAnswers
+    kAnswers,
+    kFirstLine,
+    kThere
   };
   static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
                                     {"units", required_argument, nullptr, kUnits},
@@ -147,6 +159,8 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"startup", required_argument, nullptr, kStartup},
                                     {"torch", required_argument, nullptr, kTorch},
                                     {"answers", required_argument, nullptr, kAnswers},
+                                    {"first-line", required_argument, nullptr, kFirstLine},
+                                    {"there", required_argument, nullptr, kThere},
                                     {nullptr, 0, nullptr, 0}};
   long number = 0;
   for (int code; (code = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -199,6 +213,13 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kTorch:
         if (!read_torch(value, world)) return false;
+        break;
+      case kFirstLine:
+        if (!read_number(optarg, 1, 2'000'000'000, "--first-line", number)) return false;
+        options.first_line = static_cast<int>(number);
+        break;
+      case kThere:
+        if (!read_pose(value, "--there", options.there.emplace())) return false;
         break;
       default:
         std::fputs(kUsage, stderr);

@@ -1,6 +1,7 @@
 // interp_bridge/kerf_interp/options.h - the command line of kerf-interp.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "interp_bridge/kerf_interp/world.h"
@@ -11,6 +12,9 @@ struct Options {
   std::string program;
   std::string startup;  ///< a block that is run first
   int answers_fd = -1;  ///< --answers
+  int first_line = 0;   ///< --first-line; 0: the program is run from its beginning
+  /// --there, workpiece coordinates, mm and degrees. Nothing: where the program is by then.
+  std::optional<Pose> there;
   int records_fd = 3;
 };
 

@@ -40,17 +40,24 @@ class RecordWriter {
   }
 
   bool empty() const { return used_ == 0; }
+  /// While it is on, what a machine would do is left out; what only sets how it would is written.
+  void leave_out_deeds(bool on) { leaves_out_deeds_ = on; }
   void flush();
 
  private:
   static constexpr std::size_t kBufferBytes = 64 * 1024;
   char* begin(std::uint8_t code, int line, std::size_t count, std::size_t payload) {
+    if (leaves_out_deeds_ && is_deed(code)) {
+      left_out_.resize(payload);
+      return left_out_.data();
+    }
     char* out = room(sizeof(records::Head) + payload);
     const records::Head head{code, level_, static_cast<std::uint16_t>(count),
                              line > 0 ? static_cast<std::uint32_t>(line) : 0U};
     std::memcpy(out, &head, sizeof head);
     return out + sizeof head;
   }
+  static bool is_deed(std::uint8_t code);
   char* room(std::size_t bytes) {
     if (used_ + bytes > buffer_.size()) make_room(bytes);
     char* out = buffer_.data() + used_;
@@ -63,6 +70,8 @@ class RecordWriter {
   std::vector<char> buffer_;
   std::size_t used_ = 0;
   std::uint8_t level_ = 0;
+  bool leaves_out_deeds_ = false;
+  std::vector<char> left_out_;  ///< where such a record goes
 };
 
 }  // namespace kerf::interp

@@ -22,6 +22,10 @@ class Recording {
   /// Line of the block being executed; canonical calls that are not motions do not bring it.
   int line() const { return interpreter != nullptr ? interpreter->sequence_number() : 0; }
 
+  /// The last USE_TOOL_LENGTH_OFFSET, as its record has it; empty: there was none.
+  std::vector<double> length_offset;
+  int length_offset_line = 0;
+
   int answers_fd = -1;  ///< where kerf answers; -1: it is not asked
   /// What the machine refuses to do, in its words; the run ends behind the block. Empty: nothing.
   std::string refusal;

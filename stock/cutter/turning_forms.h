@@ -19,6 +19,7 @@ namespace kerf {
 // What is sold, with room on both sides.
 inline constexpr double kLeastBar_mm = 0.5, kMostBar_mm = 200;
 inline constexpr double kLeastEdge_mm = 0.05, kMostEdge_mm = 200;
+inline constexpr double kLeastTurnFeed_mm = 0.001, kMostTurnFeed_mm = 50;
 /// ISO 5610: f of square shanks by their width, 10 to 50 mm of 8 to 40.
 inline constexpr double kShankF = 1.25;
 
@@ -44,7 +45,7 @@ struct BarSize {
 
 struct TurningOptions {
   std::optional<int> orientation;
-  std::optional<double> edge_mm, f_mm, max_depth_mm;
+  std::optional<double> edge_mm, f_mm, max_depth_mm, max_feed_mm;
   std::optional<bool> goes_its_path;
   std::optional<BarSize> shank, bar;
   std::string holder_file;

@@ -67,8 +67,8 @@ constexpr std::array kTurningForms{
                   {tr_noop("front angle FRONT"), kIsAngle},
                   {tr_noop("back angle BACK"), kIsAngle}}}}};
 
-constexpr std::array<std::string_view, 7> kTurningOptions = {"orient", "edge",   "holder", "bar",
-                                                             "f",      "max_ap", "path"};
+constexpr std::array<std::string_view, 8> kTurningOptions = {"orient", "edge",   "holder", "bar",
+                                                             "f",      "max_ap", "max_f",  "path"};
 constexpr std::array<std::string_view, 10> kMillOptions = {
     "flute", "shank", "stickout", "teeth", "live", "helix", "rake", "chip", "ramp", "centre"};
 
@@ -82,7 +82,7 @@ constexpr const char* kTurningHelp = tr_noop(
     "thread:ANGLE[:PITCH]  threading tool: 60, 55, 30, 29; sharp without PITCH\n"
     "bore:R:BAR[:LENGTH[:FRONT:BACK]]  boring bar\n"
     "each of these may add  :orient=N:edge=L:holder=WxL|profile:FILE:bar=DxL:f=L:max_ap=L\n"
-    "  :path=tool|contour");
+    "  :max_f=L:path=tool|contour");
 
 Result<BarSize> parse_bar_size(std::string_view name, std::string_view text, LengthUnit unit) {
   const std::size_t x = text.find_first_of("xX");
@@ -129,6 +129,11 @@ Done parse_turning_option(std::string_view name, std::string_view value, LengthU
     return take_value(parse_length("max_ap", value, kLeastEdge_mm, kMostEdge_mm, unit),
                       options.max_depth_mm);
   }
+  if (name == "max_f") {
+    if (options.max_feed_mm) return twice();
+    return take_value(parse_length("max_f", value, kLeastTurnFeed_mm, kMostTurnFeed_mm, unit),
+                      options.max_feed_mm);
+  }
   if (name == "path") {
     if (options.goes_its_path) return twice();
     const std::string word = to_lower(trim(value));
@@ -159,12 +164,12 @@ Done parse_turning_option(std::string_view name, std::string_view value, LengthU
   if (std::find(kMillOptions.begin(), kMillOptions.end(), name) != kMillOptions.end()) {
     return Error{
         trf("{}= is for tools that turn; a turning tool takes orient=N, edge=L, "
-            "holder=WxL|profile:FILE, bar=DxL, f=L, max_ap=L, path=tool|contour",
+            "holder=WxL|profile:FILE, bar=DxL, f=L, max_ap=L, max_f=L, path=tool|contour",
             name)};
   }
   return Error{
       trf("unknown option '{}'{} Options: orient=N, edge=L, holder=WxL|profile:FILE, "
-          "bar=DxL, f=L, max_ap=L, path=tool|contour",
+          "bar=DxL, f=L, max_ap=L, max_f=L, path=tool|contour",
           shown(name), did_you_mean(name, kTurningOptions))};
 }
 
@@ -180,6 +185,7 @@ std::string turning_options_text(const TurningOptions& options) {
   if (options.bar) text += ":bar=" + size(*options.bar);
   if (options.f_mm) text += ":f=" + number_text(*options.f_mm);
   if (options.max_depth_mm) text += ":max_ap=" + number_text(*options.max_depth_mm);
+  if (options.max_feed_mm) text += ":max_f=" + number_text(*options.max_feed_mm);
   if (options.goes_its_path) text += *options.goes_its_path ? ":path=tool" : ":path=contour";
   return text;
 }
@@ -294,6 +300,8 @@ InsertUse insert_use_of(const Cutter& cutter) {
   for (const std::string_view field : shape_fields(cutter.spec(), kTurningOptions)) {
     constexpr std::string_view kMost = "max_ap=";
     if (field.starts_with(kMost)) use.max_depth_mm = parse_decimal(field.substr(kMost.size()));
+    constexpr std::string_view kFeed = "max_f=";
+    if (field.starts_with(kFeed)) use.max_feed_mm = parse_decimal(field.substr(kFeed.size()));
     use.goes_its_path = use.goes_its_path || field == "path=tool";
   }
   return use;

@@ -40,6 +40,7 @@ namespace kerf {
 ///     f=L                 ISO 5610's f of either: from the tip to the shank's far side (by
 ///                         default 1.25 W), or to the bar's axis (0.68 D)
 ///     max_ap=L            the depth of cut that it takes
+///     max_f=L             the feed a turn that it takes
 ///     path=tool           programs have the tool's path, which CAM has compensated for the nose;
 ///                         path=contour: they have the contour (so it is without)
 /// Not those of tools that turn: flute=, shank=, stickout=, teeth=, live=.
@@ -53,6 +54,7 @@ Result<Cutter> parse_turning_shape(std::string_view name, std::string_view rest,
 /// How such a tool is used, as its spec() has it.
 struct InsertUse {
   std::optional<double> max_depth_mm;  ///< of cut, that it takes
+  std::optional<double> max_feed_mm;   ///< a turn, that it takes
   bool goes_its_path = false;          ///< programs have its path, not the contour
 };
 InsertUse insert_use_of(const Cutter& cutter);

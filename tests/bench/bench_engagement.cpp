@@ -1,11 +1,13 @@
 // bench_engagement: how near the looks of --engagement come to exact geometry, along a program.
 //
-//   bench_engagement PROGRAM --stock SPEC --tool SHAPE [--cell MM] [--looks N]
+//   bench_engagement PROGRAM --stock SPEC --tool SHAPE [--cell MM] [--looks N] [--dense MM]
 //
 // One tool cuts all moves. N feed moves (default 100), evenly spread, are looked at in their
-// middle, before they are cut, and asked about by brute force (engagement_oracle.h).
+// middle, before they are cut, and asked about by brute force (engagement_oracle.h). --dense: what
+// is removed, in cells of that size, too; fails where the two are apart by more than 1e-4.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -23,7 +25,7 @@ namespace {
 
 struct Wish {
   std::string program, stock, tool;
-  double cell_mm = 0.1;
+  double cell_mm = 0.1, dense_mm = 0;
   std::size_t looks = 100;
 };
 
@@ -59,13 +61,39 @@ std::vector<Step> steps_of(const Wish& wish) {
   return steps;
 }
 
+std::unique_ptr<ZMap> block_of(const Wish& wish, double cell_mm) {
+  ZMapOptions options;
+  options.blank = parse_blank(wish.stock).value();
+  options.cell_mm = cell_mm;
+  auto made = ZMap::create(options);
+  if (!made) fail(made.error());
+  return std::move(made.value());
+}
+
+/// As one piece of the blank is removed as another one: 1e-4 of it.
+int compare_volumes(const Wish& wish, const Cutter& cutter, const std::vector<Step>& steps,
+                    double removed_mm3) {
+  constexpr double kMostApart = 1e-4;
+  const std::unique_ptr<ZMap> dense = block_of(wish, wish.dense_mm);
+  const double blank_mm3 = dense->remaining_mm3();
+  std::vector<CutReport> reports;
+  for (const Step& step : steps) {
+    dense->cut(cutter, {&step.move, 1}, reports);
+    reports.clear();
+  }
+  dense->finish(reports);
+  const double dense_mm3 = blank_mm3 - dense->remaining_mm3();
+  const double apart = std::abs(removed_mm3 / dense_mm3 - 1);
+  fmt::print("removed {:.3f} mm3, in cells of {} mm {:.3f}: {:.2e} apart\n", removed_mm3,
+             wish.dense_mm, dense_mm3, apart);
+  return apart <= kMostApart ? 0 : 1;
+}
+
 int run(const Wish& wish) {
   const Cutter cutter = parse_shape(wish.tool).value();
   const std::vector<Step> steps = steps_of(wish);
-  ZMapOptions options;
-  options.blank = parse_blank(wish.stock).value();
-  options.cell_mm = wish.cell_mm;
-  const std::unique_ptr<ZMap> map = std::move(ZMap::create(options).value());
+  const std::unique_ptr<ZMap> map = block_of(wish, wish.cell_mm);
+  const double blank_mm3 = map->remaining_mm3();
   map->keep_cut_ids(true);
   EngagementOracle oracle(map->bounds_mm());
   PastWays ways;
@@ -104,7 +132,8 @@ int run(const Wish& wish) {
   }
   fmt::print("{}, {}, cells of {} mm: {} engaged; {}\n", wish.program, wish.tool, wish.cell_mm,
              engaged, errors.text());
-  return 0;
+  if (wish.dense_mm <= 0) return 0;
+  return compare_volumes(wish, cutter, steps, blank_mm3 - map->remaining_mm3());
 }
 
 }  // namespace
@@ -119,6 +148,7 @@ int main(int argc, char** argv) {
     if (option == "--stock") wish.stock = value;
     if (option == "--tool") wish.tool = value;
     if (option == "--cell") wish.cell_mm = std::atof(value.c_str());
+    if (option == "--dense") wish.dense_mm = std::atof(value.c_str());
     if (option == "--looks") wish.looks = static_cast<std::size_t>(std::atoi(value.c_str()));
   }
   if (!kerf::parse_blank(wish.stock) || !kerf::parse_shape(wish.tool))

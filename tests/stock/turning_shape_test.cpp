@@ -405,6 +405,11 @@ TEST(TurningShape, HowItIsUsedIsInItsText) {
   EXPECT_FALSE(insert_use_of(plain).max_depth_mm);
   EXPECT_FALSE(insert_use_of(plain).goes_its_path);
   EXPECT_FALSE(insert_use_of(*parse_shape("flat:6")).goes_its_path);
+  const Cutter fed = *parse_shape("iso:CNMG120408:max_ap=2.5:max_f=0.3");
+  EXPECT_EQ(fed.spec(), "iso:CNMG120408:max_ap=2.5:max_f=0.3");
+  EXPECT_EQ(insert_use_of(fed).max_feed_mm, 0.3);
+  EXPECT_FALSE(insert_use_of(cutter).max_feed_mm);
+  EXPECT_FALSE(parse_shape("turn:0.4:2:85:5:max_f=0"));
   EXPECT_NE(parse_shape("turn:0.4:2:85:5:path=centre").error().find("must be tool"),
             std::string::npos);
   EXPECT_NE(parse_shape("turn:0.4:2:85:5:max_ap=1:max_ap=2").error().find("given twice"),

@@ -7,6 +7,7 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "stock/cutter/turning_shape.h"
 #include "twin/config/material_reader.h"
 
 namespace kerf {
@@ -31,6 +32,7 @@ std::optional<Material> read_material(const std::string& text, OptionReader& rea
 bool has_tool_limits(const SessionOptions& session) {
   const auto is_limited = [](const Cutter& cutter) {
     const EdgeTraits& traits = cutter.edge_traits();
+    if (insert_use_of(cutter).max_feed_mm) return true;
     return traits.most_chip_mm || traits.most_ramp_deg || !traits.cuts_centre;
   };
   for (const ToolShapeArgument& tool : session.tools) {

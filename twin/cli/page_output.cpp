@@ -50,14 +50,22 @@ void note(const Done& done, Diagnostics& diagnostics) {
   diagnostics.push_back(std::move(d));
 }
 
-/// `group_of` reads `facts` and `report`, which must live as long.
+/// `group_of` reads `facts`, which must live as long.
 PageOptions options_of(const Report& report, const PageFacts& facts) {
   PageOptions options;
   options.units = facts.units;
   options.command = facts.command;
   if (facts.curve) options.curves = curves_of(*facts.curve);
+  // By number, as cuts are: of one with several shapes all are named.
+  std::vector<int> numbers;
   for (const ToolUse& use : report.tools) {
+    const auto known = std::find(numbers.begin(), numbers.end(), use.number);
+    if (known != numbers.end()) {
+      options.groups[static_cast<std::size_t>(known - numbers.begin())].name += ", " + use.shape;
+      continue;
+    }
     if (options.groups.size() == kNoGroup) break;
+    numbers.push_back(use.number);
     options.groups.push_back(
         {legend_text({use.number, use.shape}), web_color(color_of_number(options.groups.size()))});
   }
@@ -66,12 +74,10 @@ PageOptions options_of(const Report& report, const PageFacts& facts) {
     options.design = {facts.design, tolerance_mm, deviation_colors(tolerance_mm)};
   }
   if (facts.labels.empty()) return options;
-  options.group_of = [&facts, &report, groups = options.groups.size()](std::uint32_t label) {
+  options.group_of = [&facts, numbers](std::uint32_t label) {
     if (label >= facts.labels.size()) return kNoGroup;
-    for (std::size_t i = 0; i < groups; ++i) {
-      if (report.tools[i].number == facts.labels[label].tool) return static_cast<std::uint8_t>(i);
-    }
-    return kNoGroup;
+    const auto known = std::find(numbers.begin(), numbers.end(), facts.labels[label].tool);
+    return known == numbers.end() ? kNoGroup : static_cast<std::uint8_t>(known - numbers.begin());
   };
   return options;
 }

@@ -18,6 +18,7 @@
 #include "base/atomic_file.h"
 #include "base/exit_code.h"
 #include "base/translate.h"
+#include "interp_bridge/private_folder.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
 #include "twin/cli/finding_shots.h"
@@ -185,6 +186,19 @@ void end_table(MotionTable& table, Diagnostics& diagnostics) {
     diagnostics.push_back(general_error(written.error()));
 }
 
+/// Its workpiece in between is kept as long as `folder`.
+std::optional<EntryPlan> plan_entry_of(const RunRequest& request,
+                                       std::optional<PrivateFolder>& folder, std::stop_token stop,
+                                       Diagnostics& diagnostics) {
+  Result<PrivateFolder> made = PrivateFolder::create();
+  if (!made) {
+    diagnostics.push_back(general_error(made.error()));
+    return std::nullopt;
+  }
+  folder.emplace(std::move(*made));
+  return plan_entry(request.session, request.entry, folder->path(), stop, diagnostics);
+}
+
 }  // namespace
 
 RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunListener& finished) {
@@ -214,7 +228,15 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
       kRunPatience);
   kept.take(request.session.program.path, listings_of(request.session), stop.get_token(),
             diagnostics);
-  if (!has_error(diagnostics)) session = Session::open(request.session, diagnostics, outcome);
+  std::optional<PrivateFolder> between;  // of the workpiece as the entry finds it
+  std::optional<EntryPlan> entry;
+  if (!has_error(diagnostics) && request.entry.line > 0) {
+    entry = plan_entry_of(request, between, stop.get_token(), diagnostics);
+    if (entry) request.session = entry->session;
+    if (!entry && !has_error(diagnostics)) outcome = Outcome::kInterrupted;
+  }
+  const bool can_open = !has_error(diagnostics) && (entry || request.entry.line == 0);
+  if (can_open) session = Session::open(request.session, diagnostics, outcome);
   Report none;
   rename_stdin(kept, session ? session->report() : none, diagnostics);
   std::unique_ptr<MotionTable> table;
@@ -240,6 +262,10 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   {
     const ProgressBar bar([&] { return session->progress(); }, !request.quiet);
     outcome = session->run(stop.get_token(), diagnostics);
+  }
+  if (entry) {
+    session->report().entry = std::move(entry->report);
+    for (Finding& finding : entry->findings) session->report().findings.add(std::move(finding));
   }
   rename_stdin(kept, session->report(), diagnostics);
   if (request.engagement && session->stock()) doubt_engagement(*session->stock(), diagnostics);

@@ -21,6 +21,31 @@ void read_lines(OptionReader& reader, LineRange& lines) {
   reader.fault("--from-line", trf("{} lies beyond --until-line {}", lines.from, lines.until));
 }
 
+/// Nothing: --at does not say.
+std::optional<Vec3> read_place(OptionReader& reader) {
+  const std::string& text = reader.text("--at");
+  if (text.empty()) return std::nullopt;
+  const std::optional<Vec3> place = three_lengths(text, reader.unit());
+  if (!place) reader.fault("--at", trf("'{}' is no place; X,Y,Z is (three lengths)", text));
+  return place;
+}
+
+EntryWish understand_entry(OptionReader& reader, const SessionOptions& session) {
+  EntryWish wish;
+  wish.at_mm = read_place(reader);
+  if (!reader.is_yes("--enter")) {
+    if (wish.at_mm) reader.fault("--at", tr("is for --enter; nothing else asks where it stands"));
+    return wish;
+  }
+  wish.line = session.lines.from;
+  if (wish.line < 2) reader.fault("--enter", tr("needs --from-line N, from 2 on"));
+  if (session.program.interpreter == InterpreterChoice::kText || session.program.path == "-") {
+    reader.fault("--enter", tr("needs an NC file and kerf-interp: rs274 and listings begin at the "
+                               "beginning alone"));
+  }
+  return wish;
+}
+
 /// A beam and a punch go through a sheet whatever Z says.
 void note_sheet(SessionOptions& session) {
   session.program.machine.z_matters = !session.blank || !is_sheet(*session.blank);
@@ -105,6 +130,7 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
     reader.fault("--finding-png",
                  tr("the program comes from standard input, which cannot be read again"));
   }
+  request.entry = understand_entry(reader, request.session);
   request.compare = understand_compare(reader, request.session.tools);
   // Tools may be named for what is left alone.
   if (request.compare.rest_mm > 0) request.session.tools_named = false;

@@ -12,6 +12,7 @@
 #include "twin/cli/work_options.h"
 #include "twin/config/live_config.h"
 #include "twin/machines/machine_choice.h"
+#include "twin/session/entry_check.h"
 #include "twin/session/session.h"
 #include "viewer/scene.h"
 
@@ -27,6 +28,7 @@ struct RunRequest {
   std::optional<DrawMode> draw;  ///< in that window; none: as it remembers it
   MachineChoice machine;         ///< drawn there, around the workpiece
   std::string ini;               ///< of that machine; empty: none is given
+  EntryWish entry;               ///< a start in the middle
   CompareRequest compare;        ///< the finished part with its design
   bool engagement = false;       ///< how tools are engaged is measured
   bool quiet = false;

@@ -111,6 +111,7 @@ enum class FindingId : std::uint8_t {
   kConventional,      ///< milling against the feed, where climb milling is wanted
   kAirCut,            ///< time at feed in no material
   kSpindleReversed,   ///< cuts while the spindle runs anticlockwise
+  kEntryContact,      ///< a start in the middle of the program cuts what is in its way
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -310,6 +310,10 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
      tr_noop("The tool cuts while the spindle runs anticlockwise (M4): edges of right-hand tools "
              "then run backwards."),
      tr_noop("M3; or it is a left-hand tool.")},
+    {Id::kEntryContact, "entry-contact", kError, Topic::kCutter,
+     tr_noop("A start at this line (--enter) goes straight from where the machine stands, through "
+             "the workpiece or what holds it."),
+     tr_noop("Go to the place that the summary names first, or begin at an earlier line.")},
 }};
 
 constexpr bool in_order() {

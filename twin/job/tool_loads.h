@@ -13,6 +13,11 @@ namespace kerf {
 class LoadSpread {
  public:
   void add(double value, double seconds, const SourceRef& source);
+  /// By its nominal value; `most` becomes the greatest.
+  void add(const ValueRange& range, double seconds, const SourceRef& source, ValueRange& most) {
+    if (range.nominal > most_) most = range;
+    add(range.nominal, seconds, source);
+  }
 
   double most() const { return most_; }
   const SourceRef& most_at() const { return most_at_; }

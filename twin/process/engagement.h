@@ -88,6 +88,14 @@ struct EngagementPass {
   EngagementSums sums;
 };
 
+/// Crests that a tool has left between its passes.
+struct Scallops {
+  double p95_mm = 0;  ///< what 95 of 100 are not above
+  double most_mm = 0;
+  Vec3 most_at_mm{0};
+  std::size_t count = 0;  ///< places that were looked at; 0: there are none, or they are not seen
+};
+
 /// All passes of one tool.
 struct EngagementOfTool {
   int tool = 0;
@@ -97,6 +105,7 @@ struct EngagementOfTool {
   EngagementSums sums;
   /// All of its feed moves that were measured, and what of them was in no material.
   double feed_mm = 0, feed_s = 0, air_mm = 0, air_s = 0;
+  Scallops scallops;  ///< when the program is over
 };
 
 /// A part of a feed move of a tool that stands still, while the workpiece turns.

@@ -64,7 +64,9 @@ void EngagementLog::mount(int tool, const Cutter& cutter) {
   });
   tool_ = static_cast<std::uint32_t>(found - tools_.begin());
   if (found != tools_.end()) return;
-  tools_.push_back({tool, cutter.spec(), 2 * cutter.radius_mm(), 0, {}});
+  EngagementOfTool fresh;
+  fresh.tool = tool, fresh.shape = cutter.spec(), fresh.diameter_mm = 2 * cutter.radius_mm();
+  tools_.push_back(std::move(fresh));
 }
 
 /// Moves that are shorter than half a cell of the map are put together: chords, which it would not
@@ -127,6 +129,12 @@ void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, d
   if (window_.mm < least_mm || window_.seconds <= 0) return;
   sums.rate_most_mm3_per_s = std::max(sums.rate_most_mm3_per_s, window_.mm3 / window_.seconds);
   window_ = {};
+}
+
+void EngagementLog::set_scallops(int tool, const std::string& shape, const Scallops& scallops) {
+  for (EngagementOfTool& one : tools_) {
+    if (one.tool == tool && one.shape == shape) one.scallops = scallops;
+  }
 }
 
 void EngagementLog::add_turned(int tool, const Cutter& cutter, const TurnedWay& way) {

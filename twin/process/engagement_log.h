@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stock/stock_model.h"
@@ -63,6 +64,9 @@ class EngagementLog {
   /// What a move of that pass has removed, on so much of its way and time as it was in material
   /// (EngagementSums::in_material_mm(), cut_s).
   void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds);
+
+  /// What a tool has left, when all is cut.
+  void set_scallops(int tool, const std::string& shape, const Scallops& scallops);
 
   /// A part of a feed move of a turning tool.
   void add_turned(int tool, const Cutter& cutter, const TurnedWay& way);

@@ -27,6 +27,8 @@ class MotionRecorder {
   /// How the tool was engaged on that motion, or a part of it, of which there may be several:
   /// before it is cut. Only where that is measured, and of motions of which it could be.
   virtual void on_engaged(std::uint64_t /*number*/, const EngagementSums& /*sums*/) {}
+  /// The same of a tool that stands still: after it has cut.
+  virtual void on_turned(std::uint64_t /*number*/, const TurnedWay& /*way*/) {}
 };
 
 /// Several, each told what all are told.
@@ -49,6 +51,9 @@ class MotionRecorders final : public MotionRecorder {
   }
   void on_engaged(std::uint64_t number, const EngagementSums& sums) override {
     for (MotionRecorder* const each : all_) each->on_engaged(number, sums);
+  }
+  void on_turned(std::uint64_t number, const TurnedWay& way) override {
+    for (MotionRecorder* const each : all_) each->on_turned(number, way);
   }
 
  private:

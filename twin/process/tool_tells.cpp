@@ -59,6 +59,23 @@ void tell_tool(const ResolvedTool& tool, const Motion& m, FindingLog& log) {
   }
 }
 
+std::size_t place_of_use(std::vector<ToolUse>& uses, const ResolvedTool& tool, const Motion& m,
+                         FindingLog& log) {
+  ToolUse fresh = use_of(tool);
+  auto known = std::find_if(uses.begin(), uses.end(), [&](const ToolUse& use) {
+    return use.number == fresh.number && use.shape == fresh.shape;
+  });
+  if (known == uses.end()) {
+    known = std::find_if(uses.begin(), uses.end(), [&](const ToolUse& use) {
+      return use.number == fresh.number && use.shape.empty();
+    });
+    known = known == uses.end() ? uses.insert(uses.end(), std::move(fresh))
+                                : uses.insert(uses.erase(known), std::move(fresh));
+    tell_tool(tool, m, log);
+  }
+  return static_cast<std::size_t>(known - uses.begin());
+}
+
 void tell_undefined(const ResolvedTool& tool, const Motion& m, const TimedStep& step,
                     FindingLog& log) {
   Finding finding = finding_at(FindingId::kToolUndefined, Severity::kError, m, step);

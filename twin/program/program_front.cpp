@@ -62,7 +62,10 @@ bool choose_known_blank(const SessionOptions& options, ProgramFront& front,
                         Diagnostics& diagnostics, Outcome& outcome) {
   CommentBlank found;
   if (options.blank) {
-    const char* const origin = options.blank_words.empty() ? "--stock" : tr("the job");
+    const bool is_entered = options.program.machine.first_line > 0;
+    const char* const origin = options.blank_words.empty() ? "--stock"
+                               : is_entered                ? "--enter"
+                                                           : tr("the job");
     found = {options.blank, options.blank_is_guess ? tr("guessed") : origin};
   } else if (!find_comment_blank(*front.program, options.program.path, found, diagnostics)) {
     return false;

@@ -78,6 +78,9 @@ std::string more_text(const EngagementOfTool& tool) {
             sums.rate_most_mm3_per_s));
   if (const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s); !air.empty())
     add(air);
+  if (const Scallops& crests = tool.scallops; crests.count > 0)
+    add(trf("crests of {:.2g} mm between its passes, {:.2g} at most", crests.p95_mm,
+            crests.most_mm));
   return out.empty() ? out : std::string(10, ' ') + out + "\n";
 }
 
@@ -96,6 +99,11 @@ Json engagement_json(const Engagement& engagement, const std::vector<std::string
     row["feed_s"] = rounded(tool.feed_s);
     row["air_mm"] = rounded(tool.air_mm);
     row["air_s"] = rounded(tool.air_s);
+    if (const Scallops& crests = tool.scallops; crests.count > 0) {
+      const Vec3& at = crests.most_at_mm;
+      row["scallop_mm"] = {{"p95", rounded(crests.p95_mm)}, {"most", rounded(crests.most_mm)}};
+      row["scallop_at_mm"] = {rounded(at.x), rounded(at.y), rounded(at.z)};
+    }
     out["tools"].push_back(std::move(row));
   }
   for (const TurningEngagement& tool : engagement.turned) out["tools"].push_back(turned_row(tool));

@@ -17,7 +17,8 @@ constexpr std::string_view kColumns =
     "line,file,type,x,y,z,a,b,c,u,v,w,feed_mm_per_min,feed_mm_per_rev,length_mm,start_s,"
     "duration_s,tool,spindle_rpm,removed_mm3,depth_mm,removed_mm3_per_s";
 constexpr std::string_view kEngagementColumns =
-    ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s";
+    ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s,"
+    "turned_mm_per_rev,chip_mm";
 /// Rows go to the file by so many bytes.
 constexpr std::size_t kTextBytes = std::size_t{1} << 16;
 
@@ -141,7 +142,35 @@ void MotionTable::on_engaged(std::uint64_t number, const EngagementSums& sums) {
   engaged->add(sums);
 }
 
+void MotionTable::on_turned(std::uint64_t number, const TurnedWay& way) {
+  if (waiting_.empty() || waiting_.back().number != number) return;
+  std::optional<TurningEngagement>& turned = waiting_.back().turned;
+  if (!turned) turned.emplace();
+  turned->add(way);
+}
+
+void MotionTable::write_cell(bool known, double value) {
+  if (known) {
+    append_cell(value, text_);
+  } else {
+    text_ += ',';
+  }
+}
+
+/// A width of cut and angles are none of a tool that stands still.
+void MotionTable::write_turned(const TurningEngagement& sums) {
+  const bool cuts = sums.cut_mm > 0, fed = cuts && sums.feed_sum > 0;
+  write_cell(false, 0);
+  write_cell(cuts, sums.mean(sums.depth_sum_mm2));
+  for (int n = 0; n < 4; ++n) write_cell(false, 0);
+  write_cell(sums.feed_mm > 0, sums.cut_mm / sums.feed_mm);
+  write_cell(sums.cut_s > 0, sums.rate_mm3_per_s());
+  write_cell(fed, sums.mean(sums.feed_sum));
+  write_cell(fed, sums.mean(sums.chip_sum));
+}
+
 void MotionTable::write_engaged(const Row& row) {
+  if (row.turned) return write_turned(*row.turned);
   if (!row.engaged) {
     text_.append(static_cast<std::size_t>(
                      std::count(kEngagementColumns.begin(), kEngagementColumns.end(), ',')),
@@ -151,19 +180,13 @@ void MotionTable::write_engaged(const Row& row) {
   constexpr double kDegrees = 180 / kPi;
   const EngagementSums& sums = *row.engaged;
   const double in_mm = sums.in_material_mm();
-  const auto append = [this](bool known, double value) {
-    if (known) {
-      append_cell(value, text_);
-    } else {
-      text_ += ',';
-    }
-  };
   for (const double sum : {sums.wide_sum_mm2, sums.deep_sum_mm2, kDegrees * sums.entry_sum,
                            kDegrees * sums.exit_sum, sums.climb_mm})
-    append(sums.cut_mm > 0, sums.mean(sum));
-  append(in_mm > 0, sums.plunge_mm / in_mm);
-  append(row.length_mm > 0, std::min(1.0, in_mm / row.length_mm));
-  append(sums.cut_s > 0, row.removed_mm3 / sums.cut_s);
+    write_cell(sums.cut_mm > 0, sums.mean(sum));
+  write_cell(in_mm > 0, sums.plunge_mm / in_mm);
+  write_cell(row.length_mm > 0, std::min(1.0, in_mm / row.length_mm));
+  write_cell(sums.cut_s > 0, row.removed_mm3 / sums.cut_s);
+  text_ += ",,";
 }
 
 void MotionTable::write(const Row& row) {

@@ -25,10 +25,14 @@ namespace kerf {
 /// and where engagement is measured, as means over its way sideways in material:
 ///     ae_mm, ap_mm, entry_deg, exit_deg, climb_share,
 ///     plunge_share (of its way in material, straight down), cut_share (of its way, in material),
-///     cut_mm3_per_s (over its time in material)
-/// which are empty where there is none of that way; all of them of motions that were not measured.
-/// Columns may be added behind. About 2 us a row; keeps rows of motions whose cuts have not come
-/// yet. What cannot be replaced under its name (standard output) is written by commit() alone.
+///     cut_mm3_per_s (over its time in material),
+///     turned_mm_per_rev (the planned feed for each turn of a workpiece that turns), chip_mm (mean
+///     thickness of its chips: the former by the sine of the lead angle)
+/// Of a tool that stands still while the workpiece turns there are ap_mm, cut_share and from
+/// cut_mm3_per_s on; of one that turns all but the last two. They are empty where there is none of
+/// that way; all of them of motions that were not measured. Columns may be added behind. About 2 us
+/// a row; keeps rows of motions whose cuts have not come yet. What cannot be replaced under its
+/// name (standard output) is written by commit() alone.
 class MotionTable final : public MotionRecorder {
  public:
   /// `renamed`: how a file is called. Error: the file cannot be written.
@@ -44,6 +48,7 @@ class MotionTable final : public MotionRecorder {
   void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override;
   void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override;
   void on_engaged(std::uint64_t number, const EngagementSums& sums) override;
+  void on_turned(std::uint64_t number, const TurnedWay& way) override;
 
  private:
   struct Row {
@@ -54,12 +59,15 @@ class MotionTable final : public MotionRecorder {
     double depth_mm = 0;
     double length_mm = 0;
     std::optional<EngagementSums> engaged;
+    std::optional<TurningEngagement> turned;
   };
   MotionTable(std::string path, std::function<std::string(std::string)> renamed,
               bool with_engagement);
   void begin();
   void write(const Row& row);
   void write_engaged(const Row& row);
+  void write_turned(const TurningEngagement& sums);
+  void write_cell(bool known, double value);
 
   std::string path_;
   std::function<std::string(std::string)> renamed_;

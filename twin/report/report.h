@@ -16,6 +16,7 @@
 #include "twin/machine/timeline.h"
 #include "twin/process/cut_stage.h"
 #include "twin/process/engagement.h"
+#include "twin/report/entry_report.h"
 #include "twin/report/guess_row.h"
 #include "twin/report/line_window.h"
 #include "twin/report/live_report.h"
@@ -62,6 +63,7 @@ struct Report {
   std::optional<Comparison> comparison;  ///< with the design part, where one was given
   std::optional<Rest> rest;              ///< above it, where that was asked for
   std::optional<Material> material;      ///< of the workpiece, where that was said
+  std::optional<EntryReport> entry;      ///< of a start in the middle (--enter)
   std::optional<Engagement> engagement;  ///< of milling tools, where that was asked for
   std::vector<ToolUse> tools;
   std::vector<CollisionPair>

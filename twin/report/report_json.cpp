@@ -102,8 +102,8 @@ Json tools_json(const Report& report) {
                             {"line", use.chip.most_at.line},
                             {"cutting_speed_m_min", rounded(use.chip.speed_m_per_min)},
                             {"rate_max_mm3_s", rounded(use.peak_mm3_per_s)}};
-      if (use.loads) add_loads(tool["engagement"], *use.loads);
     }
+    if (use.loads) add_loads(tool["engagement"], *use.loads);
     out.push_back(std::move(tool));
   }
   return out;
@@ -252,6 +252,7 @@ std::string json_text(const Report& report) {
     out["compare"] = compare_json(*report.comparison, report.program.files);
   }
   if (report.rest) out["rest"] = rest_json(*report.rest);
+  if (report.entry) out["entry"] = entry_json(*report.entry, report.program.files);
   if (report.engagement)
     out["engagement"] = engagement_json(*report.engagement, report.program.files);
   if (!report.guesses.empty()) out["guessed"] = guesses_json(report.guesses);

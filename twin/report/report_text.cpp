@@ -123,8 +123,8 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
                 "cutting speed {:.3g} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
                 use.chip.speed_m_per_min);
-        if (use.loads) out += loads_text(*use.loads);
       }
+      if (use.loads) out += loads_text(*use.loads);
     }
     out += "\n";
     head = "          ";
@@ -341,6 +341,7 @@ std::string summary_text(const Report& report, const SummaryOptions& options) {
   const MotionTotals& m = report.motion;
   add_verdict(out, report);
   out += lines_text(report.lines);
+  if (report.entry) out += entry_text(*report.entry);
   out += trf("time      {}{} ({})\n", duration_text(m.duration_s), m.held ? held_text(*m.held) : "",
              short_model(report.time_model));
   if (report.stock) add_removed(out, *report.stock);

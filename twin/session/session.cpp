@@ -235,6 +235,23 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   return conclude(!cut_whole);
 }
 
+std::vector<Finding> Session::try_moves(std::span<const Motion> moves) const {
+  const std::unique_ptr<StockModel> tried = stock()->snapshot();
+  ToolResolver resolver(front_.tools, row_of(*stock()).can_cut);
+  const ProcessPointer process = process_of(options_, front_);
+  FindingLog log;
+  CutStage stage(*tried, resolver, log, options_.timeline, *process);
+  stage.check_by(checks_of(options_, front_));
+  stage.set_frame(front_.program->workpiece_frame());
+  stage.take(moves);
+  stage.finish(false);
+  std::vector<Finding> told;
+  for (const Finding& finding : log.kept()) {
+    if (finding.severity != Severity::kNote) told.push_back(finding);
+  }
+  return told;
+}
+
 Outcome Session::conclude(bool stopped) {
   report_.timing.interpret_s = report_.program.interpret_s;
   complete_timing();

@@ -81,6 +81,10 @@ class Session {
   }
   const KeptMoves* kept_moves() const { return kept_moves_ ? &*kept_moves_ : nullptr; }
 
+  /// What would be found if these moves, all rapid, were made over the workpiece as it is now:
+  /// errors and warnings. Nothing is cut. There is a blank.
+  std::vector<Finding> try_moves(std::span<const Motion> moves) const;
+
   /// Call once. Errors about the program are findings of the report; `diagnostics` gets those that
   /// leave nothing to report on (the guessed blank does not fit the memory, a stdin too long to
   /// keep).

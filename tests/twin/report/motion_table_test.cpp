@@ -107,11 +107,32 @@ TEST(MotionTable, HowToolsWereEngaged) {
     return lines[n].substr(lines[n].find(from) + from.size());
   };
   EXPECT_EQ(behind(0, "removed_mm3_per_s"),
-            ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s\r");
+            ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s,"
+            "turned_mm_per_rev,chip_mm\r");
   // (4 * 2 + 12 * 5) / 16; 90 / 1.8 s.
-  EXPECT_EQ(behind(1, ",90,1.5,45"), ",4.25,3,22.5,112.5,0.25,0.111111,0.9,50\r");
-  EXPECT_EQ(behind(2, ",0,0,0,0,0,600,,20,0,2,3,-8000,0,0,0"), ",,,,,,,0,\r");
-  EXPECT_EQ(behind(3, "-8000,0,0,0"), ",,,,,,,,\r");
+  EXPECT_EQ(behind(1, ",90,1.5,45"), ",4.25,3,22.5,112.5,0.25,0.111111,0.9,50,,\r");
+  EXPECT_EQ(behind(2, ",0,0,0,0,0,600,,20,0,2,3,-8000,0,0,0"), ",,,,,,,0,,,\r");
+  EXPECT_EQ(behind(3, "-8000,0,0,0"), ",,,,,,,,,,\r");
+}
+
+/// 15 of 20 mm in material in 1.5 of 2 s, 90 mm3: two parts, 5 mm of them twice as deep.
+TEST(MotionTable, HowTurningToolsWereEngaged) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path() + "/m.csv";
+  auto made = MotionTable::create(
+      path, [](std::string text) { return text; }, true);
+  ASSERT_TRUE(made);
+  const auto table = std::move(made.value());
+  TimedStep step;
+  step.duration_s = 2;
+  step.length_mm = 20;
+  table->on_step(4, feed_to({10, 0, 0}, 7), step);
+  table->on_cut(4, 90, 6);
+  table->on_turned(4, {15, 1.5, 10, 3, 0.25, 0.2, 30});
+  table->on_turned(4, {5, 0.5, 5, 6, 0.25, 0.2, 60});
+  ASSERT_TRUE(table->commit());
+  const std::string row = lines_of(path).at(1);
+  EXPECT_TRUE(row.ends_with(",90,6,45,,4,,,,,0.75,60,0.25,0.2\r")) << row;
 }
 
 TEST(MotionTable, ARestartForgets) {

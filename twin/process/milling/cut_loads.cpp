@@ -45,9 +45,10 @@ void CutLoads::mount(const Cutter& cutter, int number) {
   tool.model.emplace(*wish_.material, *tool.profile, edges, tool.traits.rake_deg);
 }
 
-std::shared_ptr<const ToolLoads> CutLoads::loads_of(int number) const {
+std::shared_ptr<const ToolLoads> CutLoads::loads_of(int number, const std::string& shape) const {
   for (const Tool& tool : tools_) {
-    if (tool.number == number && tool.loads->chip_mm.seconds() > 0) return tool.loads;
+    if (tool.number == number && tool.shape == shape && tool.loads->chip_mm.seconds() > 0)
+      return tool.loads;
   }
   return nullptr;
 }
@@ -164,8 +165,7 @@ void CutLoads::add_forces(const Part& part, const ValueRange& force_n, const Val
   ToolLoads& loads = *tool_->loads;
   loads.has_forces = true;
   const auto add = [&](LoadSpread& spread, ValueRange& most, const ValueRange& range) {
-    if (range.nominal > spread.most()) most = range;
-    spread.add(range.nominal, part.way.seconds, part.source);
+    spread.add(range, part.way.seconds, part.source, most);
   };
   const ValueRange power_kw = power_w.times(1e-3);
   add(loads.force_n, loads.force_most_n, force_n);

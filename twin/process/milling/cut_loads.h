@@ -44,8 +44,9 @@ class CutLoads {
   void finish();
   void forget();
 
-  /// Null: nothing is known of that tool's teeth, or it has not cut.
-  std::shared_ptr<const ToolLoads> loads_of(int tool) const;
+  /// Of the tool of that number with that shape (Cutter::spec()). Null: nothing is known of its
+  /// teeth, or it has not cut.
+  std::shared_ptr<const ToolLoads> loads_of(int tool, const std::string& shape) const;
 
  private:
   /// Where something is worst.

@@ -13,9 +13,14 @@ namespace {
 constexpr double kThinnestFront_mm = 0.002;
 /// Directions to begin with, from one side to the other.
 constexpr int kRays = FrontRays::kMost;
-/// Radii along a ray, of cutters that are not flat, and steps between two of them.
-constexpr int kRadii = 9, kRadiusSteps = 3;
+/// Radii along a ray, of cutters that are not flat; fewer, in some directions, to learn how far out
+/// they are in material at all; and steps to where they are.
+constexpr int kRadii = 30, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
 constexpr double kLeastStep = 0.1;
+/// What is no farther above material, of the radius, may be in some between two radii.
+constexpr double kNearMaterial = 0.06;
+/// A chip that is thinner counts by its thickness: it is next to nothing.
+constexpr double kThinChip_mm = 0.05;
 /// What is thinner has been cut: the model's rounding.
 constexpr double kThinnestFilm_mm = 2e-4;
 /// Four cells whose heights differ by more cells than that have a wall between them.
@@ -26,7 +31,7 @@ constexpr double kTwistCells = 0.05;
 /// left is right at it. A hundredth of that is beside a wall, and in none.
 constexpr double kAhead = 1.0 / 200, kMargin = kAhead / 100, kLeastMargin_mm = 4e-5;
 /// Of what is not flat, so many cells.
-constexpr double kAheadCells = 0.5;
+constexpr double kAheadCells = 0.1;
 constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
@@ -175,7 +180,26 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
   const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0;
   if (differs && is_cut_there(point, z, i, j)) return 0;
   const auto own = static_cast<double>(heights_->height(i, j));
-  return (own > least ? own : highest) - z;
+  const double stands = own > least ? own : highest;
+  if (highest - lowest <= kThinnestFront_mm) return stands - z;
+  return std::max(least, left_at_wall(point, i, j, stands)) - z;
+}
+
+/// How high the moves that made the cells about a place beside a wall have left it. A cell that the
+/// wall goes through is as high as it is on one side of the wall; what those moves have left
+/// between their wall and the place counts where it is thicker than kThinnestFront_mm.
+double EngagementScan::left_at_wall(const Vec2& point, int i, int j, double height) const {
+  std::uint32_t asked = MeshPatch::kNotCut;
+  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
+    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
+      if (static_cast<double>(heights_->height(x, y)) >= height) continue;
+      const std::uint32_t number = owners_->present_cut_id(x, y);
+      if (number == asked || !ways_->knows(number)) continue;
+      asked = number;
+      height = std::min(height, ways_->height_mm(number, point, kThinnestFront_mm));
+    }
+  }
+  return behind_itself(point, behind_held(point, height));
 }
 
 /// How high the moves that made the four cells about a place have left it; where one of them is of
@@ -191,12 +215,19 @@ double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
     if (!ways_->knows(number)) {
       height = std::min(height, own);
     } else if (number != asked) {
-      height = std::min(height, ways_->height_mm(number, point));
+      height = std::min(height, ways_->height_mm(number, point, kThinnestFront_mm));
       asked = number;
     }
   }
   height = std::min(height, highest);
   return behind_itself(point, behind_held(point, height));
+}
+
+/// How high over its tip the cutter's surface is at a place.
+double EngagementScan::lift_at(const Vec2& point, const Station& station) const {
+  const double scaled = std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+  const auto k = static_cast<std::size_t>(scaled);
+  return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
 }
 
 /// Material over the cutter's surface, which between four cells is what it is at these: what this
@@ -213,22 +244,14 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
     const Vec2 middle(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
     height = static_cast<double>(heights_->height(i, j));
     if (own_until_ > 0) height = behind_itself(middle, height);
-    const double scaled =
-        std::min(glm::length(middle - station.center) * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    const double part = scaled - static_cast<double>(k);
-    return height - tip - (lift_[k] + part * (lift_[k + 1] - lift_[k]));
+    return height - tip - lift_at(middle, station);
   };
   const auto i = static_cast<int>(std::floor(x - 0.5)), j = static_cast<int>(std::floor(y - 0.5));
   double height = 0;
   // What is held back is asked about once, and only where there would be material without it.
   const auto less_held = [&](double depth) {
     if (depth <= kThinnestFilm_mm || held_.length <= 0) return depth;
-    const double scaled =
-        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    const double part = scaled - static_cast<double>(k);
-    const double surface = tip + lift_[k] + part * (lift_[k + 1] - lift_[k]);
+    const double surface = tip + lift_at(point, station);
     return behind_held(point, depth + surface) - surface;
   };
   if (i < 0 || j < 0 || i + 1 >= heights_->nx() || j + 1 >= heights_->ny())
@@ -238,15 +261,14 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
     depth[n] = over(i + n % 2, j + n / 2, height);
     highest = std::max(highest, height), lowest = std::min(lowest, height);
   }
+  // Over what is level the cutter's own curve counts.
+  if (highest - lowest < kThinnestFilm_mm)
+    return less_held(highest - tip - lift_at(point, station));
   const double right = x - 0.5 - i, up = y - 0.5 - j;
   const bool is_wall = highest - lowest > kWallCells * cell_;
   const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
   if (owners_ != nullptr && (is_wall || twist > kTwistCells * cell_)) {
-    const double scaled =
-        std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    const double part = scaled - static_cast<double>(k);
-    return left_by_owners(point, i, j) - tip - (lift_[k] + part * (lift_[k + 1] - lift_[k]));
+    return left_by_owners(point, i, j) - tip - lift_at(point, station);
   }
   if (is_wall) return depth[(right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2)];
   return (1 - up) * ((1 - right) * depth[0] + right * depth[1]) +
@@ -254,78 +276,149 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
 }
 
 /// Along one direction, the angle from straight ahead: where the cutter ends in material.
-FrontContact EngagementScan::contact_at(const Station& station, double angle) const {
+FrontContact EngagementScan::contact_at(const Station& station, double angle) {
   FrontContact found;
   double wall = 0;
   if (engaged_ >= radius_ * (1 - kSameRadius)) {
     wall = rim_height(station, angle);
-    const double beside = radius_ * std::abs(std::sin(angle)) * lift_scale_;
-    const double under = lift_[kLifts] - lift_[static_cast<std::size_t>(beside)];
-    if (wall > 0) found = {radius_, 0, wall + under, wall};
+    const double beside = radius_ * (1 - kSameRadius) * std::abs(std::sin(angle));
+    if (wall > 0) {
+      const double under = lift_[kLifts] - cutter_->height_mm(beside);
+      found.radius_mm = radius_, found.deep_mm = wall + under;
+    }
   }
   if (!is_flat()) round_contact(station, angle, found);
+  found.high_mm += wall;
   found.edge_mm = wall + profile_mm(found.radius_mm) - profile_mm(found.inner_mm);
   return found;
 }
 
-/// From the outside in: out to where it is in material, and from where.
-void EngagementScan::round_contact(const Station& station, double angle,
-                                   FrontContact& found) const {
-  const Vec2 left(-station.ahead.y, station.ahead.x);
-  const Vec2 out = std::cos(angle) * station.ahead + std::sin(angle) * left;
-  const auto lift = [&](double radius) {
-    return lift_[static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts}))];
-  };
+/// How deep the cutter's surface is in material along one direction.
+double EngagementScan::over_ray(const Ray& ray, double radius) const {
   // Up a slope what it leaves beside it, and nearer to its tip, it has cut from farther back.
-  const double slope = rise_ > 0 ? rise_ / length_ : 0;
-  const auto leads = [&](double radius) {
+  if (ray.slope > 0) {
     const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
-    return (lift_[k + 1] - lift_[k]) * lift_scale_ * std::cos(angle) > slope;
-  };
-  const auto over = [&](double radius) {
-    if (slope > 0 && !leads(radius)) return -kThinnestFilm_mm;
-    const double depth = over_surface(station, station.center + radius * out) - kThinnestFilm_mm;
-    if (depth > 0) {
-      const double lowest = lift(radius * std::abs(std::sin(angle)));
-      found.deep_mm = std::max(found.deep_mm, depth + lift(radius) - lowest);
-    }
-    return depth;
-  };
-  // Between a radius in material and one in none.
-  const auto edge = [&](double in, double depth_in, double free, double depth_free) {
-    const auto between = [&] {
-      const double part = depth_in / std::max(depth_in - depth_free, kThinnestFilm_mm);
-      return in + std::clamp(part, kLeastStep, 1 - kLeastStep) * (free - in);
-    };
-    for (int n = 0; n < kRadiusSteps; ++n) {
-      const double middle = between(), depth = over(middle);
-      (depth > 0 ? in : free) = middle;
-      (depth > 0 ? depth_in : depth_free) = depth;
-    }
-    return between();
-  };
-  double inside = found.radius_mm, depth = 0;
-  if (inside <= 0) {
-    const double step = (engaged_ - flat_radius_) / kRadii;
-    double free = engaged_, depth_free = 0;
-    for (int k = 0; k < kRadii && inside <= 0; ++k) {
-      const double radius = engaged_ - (k + 0.5) * step;
-      depth = over(radius);
-      if (depth > 0) {
-        inside = radius;
-        if (k == 0) depth_free = std::min(over(engaged_), 0.0);
-      } else {
-        free = radius, depth_free = depth;
-      }
-    }
-    if (inside <= 0) return;
-    found.radius_mm = edge(inside, depth, free, depth_free);
+    if ((lift_[k + 1] - lift_[k]) * lift_scale_ * ray.ahead <= ray.slope) return -kThinnestFilm_mm;
   }
-  // Deepest nearer to the middle. Where nothing is there it begins farther out.
-  const double nearer = 0.5 * inside, depth_nearer = over(nearer);
-  if (depth_nearer > 0) return;
-  if (depth <= 0) depth = found.edge_mm;
-  found.inner_mm = edge(inside, depth, nearer, depth_nearer);
+  return over_surface(*ray.station, ray.station->center + radius * ray.out) - kThinnestFilm_mm;
+}
+
+EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle) const {
+  const Vec2 left(-station.ahead.y, station.ahead.x);
+  Ray ray;
+  ray.station = &station;
+  ray.out = std::cos(angle) * station.ahead + std::sin(angle) * left;
+  ray.ahead = std::cos(angle);
+  ray.slope = rise_ > 0 ? rise_ / length_ : 0;
+  return ray;
+}
+
+/// The place of a radius of `count` ones, closer together farther out, where the profile is steep.
+double EngagementScan::radius_of(int k, int count) const {
+  const double part = std::sin(kPi / 2 * k / count);
+  return flat_radius_ + (reach_ - flat_radius_) * part;
+}
+
+/// Out to where anything of what is not flat is in material: in that, radii are laid.
+double EngagementScan::reach_of(const Station& station) {
+  reach_ = engaged_;
+  if (is_flat()) return engaged_;
+  const double near_mm = kNearMaterial * radius_;
+  int farthest = -1;
+  for (int n = 0; n <= kFirstRays; ++n) {
+    const Ray ray = ray_at(station, kPi * (static_cast<double>(n) / kFirstRays - 0.5) * 0.99);
+    for (int k = kFirstRadii; k > farthest; --k) {
+      if (over_ray(ray, radius_of(k, kFirstRadii) * (1 - kSameRadius)) > -near_mm) farthest = k;
+    }
+  }
+  const bool is_all = farthest < 0 || farthest + 1 >= kFirstRadii;
+  return is_all ? engaged_ : radius_of(farthest + 1, kFirstRadii);
+}
+
+/// The mean over a stretch, on which a thickness goes evenly from one to the other, of what of it
+/// counts.
+double EngagementScan::counted(double from_mm, double to_mm) {
+  const auto sum = [](double thick) {
+    if (thick <= 0) return 0.0;
+    return thick < kThinChip_mm ? thick * thick / (2 * kThinChip_mm) : thick - kThinChip_mm / 2;
+  };
+  if (std::abs(to_mm - from_mm) < kSameRadius)
+    return std::clamp(0.5 * (from_mm + to_mm) / kThinChip_mm, 0.0, 1.0);
+  return (sum(to_mm) - sum(from_mm)) / (to_mm - from_mm);
+}
+
+/// Where, between a radius in material and one in none, it ends.
+EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, RayPlace free) const {
+  const auto between = [&] {
+    const double part = in.depth / std::max(in.depth - free.depth, kThinnestFilm_mm);
+    return in.radius + std::clamp(part, kLeastStep, 1 - kLeastStep) * (free.radius - in.radius);
+  };
+  for (int n = 0; n < kRadiusSteps; ++n) {
+    const double middle = between(), depth = over_ray(ray, middle);
+    (depth > 0 ? in : free) = {middle, depth};
+  }
+  return {between(), in};
+}
+
+/// Places along one direction, from the inside out. What is thinner than radii are apart lies about
+/// the place that is nearest to material.
+void EngagementScan::look_along(const Ray& ray) {
+  along_.clear();
+  std::size_t nearest = 0;
+  for (int k = 0; k <= kRadii; ++k) {
+    const double radius = radius_of(k, kRadii) * (1 - kSameRadius);
+    along_.push_back({radius, over_ray(ray, radius)});
+    if (along_.back().depth > along_[nearest].depth) nearest = along_.size() - 1;
+  }
+  const double depth = along_[nearest].depth;
+  if (depth > 0 || depth < -kNearMaterial * radius_) return;
+  for (std::size_t k = std::min(nearest + 1, along_.size() - 1); k >= nearest && k > 0; --k) {
+    const double radius = 0.5 * (along_[k - 1].radius + along_[k].radius);
+    along_.insert(along_.begin() + static_cast<std::ptrdiff_t>(k), {radius, over_ray(ray, radius)});
+  }
+}
+
+/// How high it is in material, out to where, and from where.
+void EngagementScan::round_contact(const Station& station, double angle, FrontContact& found) {
+  const Ray ray = ray_at(station, angle);
+  look_along(ray);
+  const auto lift = [&](double radius) {
+    const double scaled = std::min(radius * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
+  };
+  const auto take = [&](const RayPlace& from, const RayPlace& to) {
+    const double width = std::abs(to.radius - from.radius);
+    if (width <= 0) return;
+    const double rise = std::abs(lift(to.radius) - lift(from.radius));
+    const double normal = width / std::hypot(width, rise);
+    found.high_mm += rise * counted(normal * from.depth, normal * to.depth);
+  };
+  double inner = -1, outer = -1;
+  for (std::size_t k = 0; k < along_.size(); ++k) {
+    const RayPlace& at = along_[k];
+    if (at.depth > 0) {
+      const double lowest = cutter_->height_mm(at.radius * std::abs(std::sin(angle)));
+      found.deep_mm = std::max(found.deep_mm, at.depth + cutter_->height_mm(at.radius) - lowest);
+      if (k == 0) inner = at.radius;
+      outer = at.radius;
+    }
+    if (k == 0) continue;
+    const RayPlace& before = along_[k - 1];
+    if (at.depth > 0 && before.depth > 0) {
+      take(before, at);
+    } else if (at.depth > 0 || before.depth > 0) {
+      const bool begins = at.depth > 0;
+      const RayEdge edge = begins ? edge_on(ray, at, before) : edge_on(ray, before, at);
+      take({edge.radius, 0}, edge.in);
+      take(edge.in, begins ? at : before);
+      if (begins && inner < 0) inner = edge.radius;
+      if (!begins) outer = edge.radius;
+    }
+  }
+  if (inner < 0) return;
+  if (found.radius_mm <= 0) found.radius_mm = outer;
+  found.inner_mm = inner > flat_radius_ ? inner : 0;
 }
 
 EngagementLook EngagementScan::plunge_at(const Station& station) const {
@@ -386,6 +479,7 @@ EngagementScan::Station EngagementScan::station_at(double part) const {
 EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutter& cutter,
                                           const CutMove& move, const Look& asked) {
   set(heights, cutter, move);
+  cutter_ = &cutter;
   set_held(asked.held);
   const bool knows_walls = asked.owners != nullptr && asked.ways != nullptr;
   own_until_ = 0;
@@ -398,7 +492,8 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   // What stands right before it is removed next.
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
-  FrontRays rays(kRays, radius_);
+  reach_ = reach_of(station);
+  FrontRays rays(kRays, radius_, is_flat());
   rays.sweep([&](double angle) { return contact_at(station, angle); });
   EngagementLook look = rays.look(asked.anticlockwise);
   if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));

@@ -7,6 +7,7 @@
 
 #include "stock/present_heights.h"
 #include "twin/motion/motion_geometry.h"
+#include "twin/process/milling/scallops.h"
 #include "twin/process/milling/way_profile.h"
 
 namespace kerf {
@@ -21,7 +22,7 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
-constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 12'000, kShareOfCells = 0.5;
+constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 30'000, kShareOfCells = 0.25;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
@@ -56,7 +57,7 @@ EngagementMeter::EngagementMeter(const StockModel& stock, EngagementLog& log,
 
 void EngagementMeter::mount(int tool, const Cutter& cutter) {
   log_.mount(tool, cutter);
-  ways_.mount(cutter);
+  ways_.mount(cutter, tool);
   diameter_mm_ = 2 * cutter.radius_mm();
   lift();
   has_held_ = false;
@@ -253,6 +254,17 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   flush();
   heights_ = nullptr, points_ = nullptr;
   return taken_;
+}
+
+void EngagementMeter::finish() {
+  hand_over_();
+  const StockModel& model = stock_.bare();
+  const auto* const present = dynamic_cast<const PresentHeights*>(&model);
+  if (present == nullptr || !model.keeps_cut_ids()) return;
+  const std::optional<HeightGrid> heights = present->present_heights();
+  if (!heights) return;
+  for (const ScallopsOfTool& tool : ScallopScan(*heights, *present, ways_).run())
+    log_.set_scallops(tool.tool, tool.shape, tool.crests);
 }
 
 }  // namespace kerf

@@ -20,7 +20,7 @@ namespace kerf {
 /// looks differ by more than kSameAngle_rad, or a twentieth of the depth or the diameter. Moves
 /// that are shorter are taken together: each look counts until the way from it on is that long, or
 /// turns by 30 degrees; where looks one after the other are alike, for up to two diameters. Where
-/// moves are cut so quickly that looks would take more than half of that time, for up to four.
+/// moves are cut so quickly that looks would take more than a quarter of that time, for up to four.
 /// Needs heights as they are (PresentHeights) and upright tools, or a model that can be asked about
 /// points (SolidPoints); tools without an undercut, moves that are straight or arcs about Z of up
 /// to one turn. Others are told as unmeasured. One thread.
@@ -60,6 +60,10 @@ class EngagementMeter {
   void note(const CutMove& move);
   /// A move that is cut, under its number, whatever it is.
   void note_cut(const CutMove& move) { ways_.add(move); }
+
+  /// All is cut: what crests are left (ScallopScan), where there are heights and it is known who
+  /// cut them.
+  void finish();
 
   static constexpr double kSameAngle_rad = 8 * kPi / 180;
 

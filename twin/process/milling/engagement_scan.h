@@ -182,23 +182,51 @@ class EngagementScan {
                      bool at_rim) const;
   double rim_height(const Station& station, double angle) const;
   bool is_cut_there(const Vec2& point, double z, int i, int j) const;
+  double lift_at(const Vec2& point, const Station& station) const;
   double over_surface(const Station& station, const Vec2& point) const;
   double behind_itself(const Vec2& point, double height) const;
   double left_by_owners(const Vec2& point, int i, int j) const;
+  double left_at_wall(const Vec2& point, int i, int j, double height) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
   Station station_at(double part) const;
   Vec2 before_rim(const Station& station, double angle) const;
-  FrontContact contact_at(const Station& station, double angle) const;
-  void round_contact(const Station& station, double angle, FrontContact& found) const;
+  FrontContact contact_at(const Station& station, double angle);
+  /// A direction from the tool's middle.
+  struct Ray {
+    const Station* station = nullptr;
+    Vec2 out{1, 0};
+    double ahead = 1;  ///< its part along the way
+    double slope = 0;  ///< of a way up
+  };
+  Ray ray_at(const Station& station, double angle) const;
+  double over_ray(const Ray& ray, double radius) const;
+  double radius_of(int k, int count) const;
+  double reach_of(const Station& station);
+  static double counted(double from_mm, double to_mm);
+  /// How deep the cutter is in material at a radius of a direction; below 0: so far above it.
+  struct RayPlace {
+    double radius = 0, depth = 0;
+  };
+  /// Where that begins or ends, and the nearest place in material that was looked at.
+  struct RayEdge {
+    double radius = 0;
+    RayPlace in;
+  };
+  RayEdge edge_on(const Ray& ray, RayPlace in, RayPlace free) const;
+  void look_along(const Ray& ray);
+  void round_contact(const Station& station, double angle, FrontContact& found);
   double profile_mm(double radius) const;
   EngagementLook plunge_at(const Station& station) const;
   bool cuts_centre(const Station& station) const;
 
   const HeightGrid* heights_ = nullptr;
-  Motion motion_;  ///< of arcs
+  const Cutter* cutter_ = nullptr;  ///< of a look
+  std::vector<RayPlace> along_;     ///< one direction of it
+  Motion motion_;                   ///< of arcs
   bool arc_ = false;
   double radius_ = 0, flat_radius_ = 0;
   double engaged_ = 0;  ///< greatest radius that can be in material
+  double reach_ = 0;    ///< .. and that is, of what is not flat
   double z_ = 0, rise_ = 0, low_z_ = 0;
   Vec2 start_{0}, direction_{1, 0};
   double length_ = 0;  ///< seen from above

@@ -1,6 +1,35 @@
 #include "twin/process/milling/front_rays.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace kerf {
+
+/// A height that changes evenly: by Simpson's rule, which is right of its products.
+void FrontRays::add(const Direction& from, const Direction& to) {
+  const double width = to.angle - from.angle;
+  const Direction middle{0.5 * (from.angle + to.angle), 0.5 * (from.high_mm + to.high_mm)};
+  const auto sum = [&](auto&& value) {
+    return width / 6 * (value(from) + 4 * value(middle) + value(to));
+  };
+  heights_.plain += width * middle.high_mm;
+  if (to.angle <= 0) heights_.right += width * middle.high_mm;
+  heights_.angle += sum([](const Direction& at) { return at.high_mm * at.angle; });
+  heights_.angle2 += sum([](const Direction& at) { return at.high_mm * at.angle * at.angle; });
+  heights_.square += sum([](const Direction& at) { return at.high_mm * at.high_mm; });
+}
+
+void FrontRays::settle() {
+  if (heights_.plain <= 0) return;
+  const double middle = heights_.angle / heights_.plain;
+  const double half =
+      std::sqrt(std::max(0.0, 3 * (heights_.angle2 / heights_.plain - middle * middle)));
+  right_rad_ = std::max(middle - half, -kPi / 2);
+  left_rad_ = std::min(middle + half, kPi / 2);
+  found_.angle_rad =
+      std::min(heights_.plain * heights_.plain / heights_.square, left_rad_ - right_rad_);
+  right_of_way_rad_ = found_.angle_rad * heights_.right / heights_.plain;
+}
 
 EngagementLook FrontRays::look(bool anticlockwise) const {
   EngagementLook look = found_;

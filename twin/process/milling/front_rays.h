@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "base/geometry.h"
@@ -18,15 +19,23 @@ struct FrontContact {
   double inner_mm = 0;   ///< from here on
   double deep_mm = 0;    ///< the greatest height over what the cutter leaves there
   double edge_mm = 0;    ///< so much of the profile is in it
+  double high_mm = 0;    ///< the height of that; what is next to nothing counts by its thickness
 };
 
-/// Asks for the contact in some directions, and in more where material begins and ends (each of
-/// these to a 32nd of the directions' distance). Angles are from straight ahead to the left.
-/// What lies between two directions, with none of it in either, is not seen.
+/// Asks for the contact in some directions, and in more where it changes (down to a 32nd of the
+/// directions' distance). Angles are from straight ahead to the left. What lies between two
+/// directions, with none of it in either, is not seen.
+///
+/// A flat tool's directions are in material or not, and its angle is that of those that are. What
+/// is not flat is in material higher up in one direction than in another, and where that begins
+/// with next to nothing there is no place to point at. Its directions count by that height h: the
+/// angle is (the sum of h)^2 / the sum of h^2, which is that of an even height where it is even;
+/// entry and exit are those of an even height with the same middle and the same spread.
 class FrontRays {
  public:
   /// `count`: directions but one, of kMost at most.
-  FrontRays(int count, double radius_mm) : count_(count), radius_mm_(radius_mm) {}
+  FrontRays(int count, double radius_mm, bool is_flat)
+      : count_(count), radius_mm_(radius_mm), is_flat_(is_flat) {}
   static constexpr int kMost = 18;
 
   /// `contact_at(angle)` gives a FrontContact.
@@ -39,10 +48,12 @@ class FrontRays {
   static constexpr int kHalvings = 5;
   /// The outermost two are so near to the sides.
   static constexpr double kRim_rad = 1.0 * kPi / 180;
-  /// A direction counts where the cutter is in material out to this part of the farthest it is:
-  /// near its tip a ball is in material all round.
-  static constexpr double kOuterPart = 0.5;
+  /// Heights that differ by less than this part of the greatest are taken to change evenly.
+  static constexpr double kEven = 0.03;
 
+  struct Direction {
+    double angle = 0, high_mm = 0;
+  };
   double direction(int k) const {
     if (k == 0) return kRim_rad - kPi / 2;
     if (k == count_) return kPi / 2 - kRim_rad;
@@ -67,51 +78,92 @@ class FrontRays {
     found_.angle_rad += to - from;
     right_of_way_rad_ += std::min(to, 0.0) - std::min(from, 0.0);
   }
+  template <class ContactAt>
+  void find_edge(const ContactAt& contact_at, int k, bool is);
+  template <class ContactAt>
+  void weigh(const ContactAt& contact_at, const Direction& from, const Direction& to, int halvings);
+  void add(const Direction& from, const Direction& to);
+  void settle();
 
   int count_;
   double radius_mm_;
+  bool is_flat_;
   EngagementLook found_;
   double low_mm_ = std::numeric_limits<double>::infinity(), high_mm_ = -low_mm_;
   double left_rad_ = 0, right_rad_ = 0;
   double right_of_way_rad_ = 0;  ///< of angle_rad
+  /// Integrals over the directions: of the height h, of h * angle, h * angle^2, h^2, and of h on
+  /// the right of the way.
+  struct Heights {
+    double plain = 0, angle = 0, angle2 = 0, square = 0, right = 0;
+  } heights_;
+  double highest_mm_ = 0;
 };
 
 template <class ContactAt>
 void FrontRays::sweep(const ContactAt& contact_at) {
   std::array<FrontContact, kMost + 1> contacts;
-  double farthest_mm = 0;
   for (int k = 0; k <= count_; ++k) {
     FrontContact& contact = contacts[static_cast<std::size_t>(k)];
     contact = contact_at(direction(k));
     note(contact, direction(k));
-    farthest_mm = std::max(farthest_mm, contact.radius_mm);
+    highest_mm_ = std::max(highest_mm_, contact.high_mm);
   }
-  if (farthest_mm <= 0) return;
-  const auto counts = [&](const FrontContact& contact) {
-    return contact.radius_mm >= kOuterPart * farthest_mm;
+  if (found_.effective_mm <= 0) return;
+  const auto at = [&](int k) {
+    return Direction{direction(k), contacts[static_cast<std::size_t>(k)].high_mm};
   };
-  for (int k = 1; k <= count_; ++k) {
-    const double from = k == 1 ? -kPi / 2 : direction(k - 1);
-    const double to = k == count_ ? kPi / 2 : direction(k);
-    const bool was = counts(contacts[static_cast<std::size_t>(k - 1)]);
-    const bool is = counts(contacts[static_cast<std::size_t>(k)]);
-    if (is == was) {
-      if (is) count(from, to);
-      continue;
-    }
-    double in = is ? direction(k) : direction(k - 1), off = is ? direction(k - 1) : direction(k);
-    double radius_mm = 0;
-    for (int n = 0; n < kHalvings; ++n) {
-      const double middle = 0.5 * (in + off);
-      const FrontContact contact = contact_at(middle);
-      note(contact, middle);
-      if (counts(contact)) radius_mm = contact.radius_mm;
-      (counts(contact) ? in : off) = middle;
-    }
-    const double edge = 0.5 * (in + off);
-    if (radius_mm > 0) widen(radius_mm, edge);
-    count(is ? edge : from, is ? to : edge);
+  if (!is_flat_) {
+    add({-kPi / 2, at(0).high_mm}, at(0));
+    for (int k = 1; k <= count_; ++k) weigh(contact_at, at(k - 1), at(k), kHalvings);
+    add(at(count_), {kPi / 2, at(count_).high_mm});
+    return settle();
   }
+  for (int k = 1; k <= count_; ++k) {
+    const bool was = contacts[static_cast<std::size_t>(k - 1)].radius_mm > 0;
+    const bool is = contacts[static_cast<std::size_t>(k)].radius_mm > 0;
+    if (is != was) {
+      find_edge(contact_at, k, is);
+    } else if (is) {
+      count(k == 1 ? -kPi / 2 : direction(k - 1), k == count_ ? kPi / 2 : direction(k));
+    }
+  }
+}
+
+/// Between the direction k and the one before it, one of which is in material.
+template <class ContactAt>
+void FrontRays::find_edge(const ContactAt& contact_at, int k, bool is) {
+  const double from = k == 1 ? -kPi / 2 : direction(k - 1);
+  const double to = k == count_ ? kPi / 2 : direction(k);
+  double in = is ? direction(k) : direction(k - 1), off = is ? direction(k - 1) : direction(k);
+  double radius_mm = 0;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = 0.5 * (in + off);
+    const FrontContact contact = contact_at(middle);
+    note(contact, middle);
+    if (contact.radius_mm > 0) radius_mm = contact.radius_mm;
+    (contact.radius_mm > 0 ? in : off) = middle;
+  }
+  const double edge = 0.5 * (in + off);
+  if (radius_mm > 0) widen(radius_mm, edge);
+  count(is ? edge : from, is ? to : edge);
+}
+
+/// In halves, as long as heights do not change evenly.
+template <class ContactAt>
+void FrontRays::weigh(const ContactAt& contact_at, const Direction& from, const Direction& to,
+                      int halvings) {
+  if (halvings == 0 || std::abs(to.high_mm - from.high_mm) <= kEven * highest_mm_)
+    return add(from, to);
+  const double angle = 0.5 * (from.angle + to.angle);
+  const FrontContact contact = contact_at(angle);
+  note(contact, angle);
+  highest_mm_ = std::max(highest_mm_, contact.high_mm);
+  const Direction middle{angle, contact.high_mm};
+  const double even_mm = 0.5 * (from.high_mm + to.high_mm);
+  const bool goes_on = std::abs(middle.high_mm - even_mm) > kEven / 4 * highest_mm_;
+  weigh(contact_at, from, middle, goes_on ? halvings - 1 : 0);
+  weigh(contact_at, middle, to, goes_on ? halvings - 1 : 0);
 }
 
 }  // namespace kerf

@@ -17,6 +17,7 @@ namespace {
 constexpr double kLeastOfWindow = 0.5;
 /// A longer way in material removes some cells.
 constexpr double kLeastRemoving_cells = 4;
+constexpr std::size_t kPartsTaken = 4096;
 
 /// Round a corner the planner goes as fast as the faster of its two moves.
 double reached_mm_per_min(const TimedStep& step) {
@@ -104,8 +105,10 @@ void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
       part.look = {};
     loads_.take(part);
   }
-  if (load_parts_taken_ < load_parts_.size()) return;
-  load_parts_.clear();
+  // Some moves are always on their way: those that have arrived are let go of in numbers.
+  if (load_parts_taken_ < std::min(kPartsTaken, load_parts_.size())) return;
+  load_parts_.erase(load_parts_.begin(),
+                    load_parts_.begin() + static_cast<std::ptrdiff_t>(load_parts_taken_));
   load_parts_taken_ = 0;
 }
 

@@ -91,6 +91,7 @@ void MillingStage::begin_reporting() {
 }
 
 void MillingStage::finish(bool whole) {
+  if (engagement_) engagement_->finish();
   parts_.finish();
   fixtures_.finish();
   machine_.finish();
@@ -103,7 +104,7 @@ void MillingStage::finish(bool whole) {
   }
   loads_.finish();
   for (ToolUse& use : uses_) {
-    use.loads = loads_.loads_of(use.number);
+    use.loads = loads_.loads_of(use.number, use.shape);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }

@@ -22,13 +22,8 @@ constexpr double kCoarse = 1 + 1e-6;
 }  // namespace
 
 void MillingStage::announce(const ResolvedTool& tool, const Motion& m) {
-  const auto known = std::find_if(uses_.begin(), uses_.end(),
-                                  [&](const ToolUse& use) { return use.number == tool.number; });
-  use_ = static_cast<std::uint32_t>(known - uses_.begin());
-  if (known != uses_.end()) return;
-  uses_.push_back(use_of(tool));
-  deepest_.emplace_back();
-  tell_tool(tool, m, log_);
+  use_ = static_cast<std::uint32_t>(place_of_use(uses_, tool, m, log_));
+  deepest_.resize(uses_.size());
 }
 
 /// Of each such move: each is missing from the workpiece.

@@ -48,7 +48,8 @@ double PastWays::Tool::reach_mm(double above_tip_mm) const {
 }
 
 double PastWays::Tool::lift_mm(double distance_mm) const {
-  return between(lift, distance_mm / radius_mm);
+  // Even steps of the root of what is left to its side, where the ends of its corners are steep.
+  return between(lift, std::sqrt(std::max(0.0, 1 - distance_mm / radius_mm)));
 }
 
 void PastWays::clear() {
@@ -59,18 +60,21 @@ void PastWays::clear() {
   tool_ = 0;
 }
 
-void PastWays::mount(const Cutter& cutter) {
-  const auto found = std::find_if(tools_.begin(), tools_.end(),
-                                  [&](const Tool& tool) { return tool.spec == cutter.spec(); });
+void PastWays::mount(const Cutter& cutter, int number) {
+  const auto found = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& tool) {
+    return tool.spec == cutter.spec() && tool.number == number;
+  });
   tool_ = static_cast<std::uint32_t>(found - tools_.begin());
   if (found != tools_.end()) return;
   Tool tool;
   tool.spec = cutter.spec();
+  tool.number = number;
   tool.radius_mm = cutter.radius_mm();
-  for (std::size_t k = 0; k <= kReaches; ++k)
-    tool.lift.push_back(
-        cutter.height_mm(tool.radius_mm * (1 - 1e-12) * (static_cast<double>(k) / kReaches)));
-  tool.high_mm = tool.lift.back();
+  for (std::size_t k = 0; k <= kReaches; ++k) {
+    const double part = static_cast<double>(k) / kReaches;
+    tool.lift.push_back(cutter.height_mm(tool.radius_mm * (1 - std::max(1e-12, part * part))));
+  }
+  tool.high_mm = tool.lift.front();
   tool.is_flat = tool.high_mm <= 0;
   tool.is_ball = !tool.is_flat && is_ball_end(cutter);
   for (std::size_t k = 0; k <= kReaches && !tool.is_flat; ++k) {
@@ -154,29 +158,31 @@ bool PastWays::line_covers(const Way& way, const Vec2& point, double z_mm, doubl
   return golden_section(low_at, first, last, kSlopeSteps).least <= z_mm + margin_mm;
 }
 
-double PastWays::height_mm(std::uint32_t number, const Vec2& point) const {
+double PastWays::height_mm(std::uint32_t number, const Vec2& point, double margin_mm) const {
   double low = kNotThere;
   if (number >= last_.size()) return low;
   int asked = 0;
   for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
     const Way& way = ways_[n];
-    low = std::min(low, way.arc == kNone ? line_height(way, point) : arc_height(way, point));
+    low = std::min(low, way.arc == kNone ? line_height(way, point, margin_mm)
+                                         : arc_height(way, point, margin_mm));
     ++asked;
   }
   return low;
 }
 
-double PastWays::line_height(const Way& way, const Vec2& point) const {
+double PastWays::line_height(const Way& way, const Vec2& point, double margin_mm) const {
   const Tool& tool = tools_[way.tool];
   const Vec2 from(static_cast<double>(way.from[0]), static_cast<double>(way.from[1]));
   const Vec2 along = Vec2(static_cast<double>(way.to[0]), static_cast<double>(way.to[1])) - from;
   const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
   const Vec2 arm = point - from;
-  const double length2 = glm::dot(along, along), radius = tool.radius_mm;
+  const double length2 = glm::dot(along, along), radius = tool.radius_mm + margin_mm;
   const double nearest = length2 > 0 ? glm::dot(arm, along) / length2 : 0;
   const auto surface = [&](double t) {
     const double distance = glm::length(arm - t * along);
-    return distance > radius ? kNotThere : z + rise * t + tool.lift_mm(distance);
+    return distance > radius ? kNotThere
+                             : z + rise * t + tool.lift_mm(std::max(0.0, distance - margin_mm));
   };
   if (std::abs(rise) < kLevel_mm || length2 == 0)
     return length2 == 0 ? std::min(surface(0), surface(0) + rise)
@@ -195,18 +201,21 @@ double PastWays::line_height(const Way& way, const Vec2& point) const {
   return golden_section(surface, first, last, kHeightSteps).least;
 }
 
-double PastWays::arc_height(const Way& way, const Vec2& point) const {
+double PastWays::arc_height(const Way& way, const Vec2& point, double margin_mm) const {
   const Tool& tool = tools_[way.tool];
   const Arc& arc = arcs_[way.arc];
   const Vec2 arm = point - arc.center;
-  const double out = glm::length(arm), sweep = std::abs(arc.sweep), radius = tool.radius_mm;
+  const double out = glm::length(arm), sweep = std::abs(arc.sweep),
+               radius = tool.radius_mm + margin_mm;
   const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
   if (std::abs(out - arc.radius) > radius) return kNotThere;
   const double at = behind_start(std::atan2(arm.y, arm.x), arc.start, arc.sweep);
   const auto surface = [&](double angle) {
     const double distance = std::sqrt(std::max(
         0.0, out * out + arc.radius * arc.radius - 2 * out * arc.radius * std::cos(angle - at)));
-    return distance > radius ? kNotThere : z + rise * angle / sweep + tool.lift_mm(distance);
+    return distance > radius
+               ? kNotThere
+               : z + rise * angle / sweep + tool.lift_mm(std::max(0.0, distance - margin_mm));
   };
   if (std::abs(rise) < kLevel_mm)
     return at <= sweep ? surface(at) : std::min(surface(0), surface(sweep));

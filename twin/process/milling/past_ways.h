@@ -22,29 +22,43 @@ class PastWays {
   static constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 27;
 
   void clear();
-  /// What is added from now on is cut by this one.
-  void mount(const Cutter& cutter);
+  /// What is added from now on is cut by this one, which the program calls by this number.
+  void mount(const Cutter& cutter, int number = 0);
   /// Lines, and arcs about Z. Others are left out, and cover nothing.
   void add(const CutMove& move);
+  /// How many there are, and of each of them.
+  std::size_t tools() const { return tools_.size(); }
+  double radius_mm(int tool) const { return tools_[static_cast<std::size_t>(tool)].radius_mm; }
+  int number_of(int tool) const { return tools_[static_cast<std::size_t>(tool)].number; }
+  const std::string& shape_of(int tool) const {
+    return tools_[static_cast<std::size_t>(tool)].spec;
+  }
+  /// Of the last move of that number; -1: it is not known, or its tool is flat.
+  int round_tool_of(std::uint32_t number) const {
+    if (!knows(number)) return -1;
+    const std::uint32_t tool = ways_[last_[number]].tool;
+    return tools_[tool].is_flat ? -1 : static_cast<int>(tool);
+  }
   bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
   /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
   /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
-  /// slope that is of neither a flat tool nor a ball 200.
-  double height_mm(std::uint32_t number, const Vec2& point) const;
+  /// slope that is of neither a flat tool nor a ball 200. As if the tool were wider by `margin_mm`.
+  double height_mm(std::uint32_t number, const Vec2& point, double margin_mm = 0) const;
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// A cutter's surface: how wide it is where it is so much above its tip.
   struct Tool {
     std::string spec;
+    int number = 0;
     double radius_mm = 0;
     bool is_flat = false, is_ball = false;
     double high_mm = 0;          ///< where it is as wide as it gets
     std::vector<double> radius;  ///< over the height, 0 .. high_mm
     double reach_mm(double above_tip_mm) const;
-    std::vector<double> lift;  ///< over the radius
+    std::vector<double> lift;  ///< over the root of 1 - distance / radius
     double lift_mm(double distance_mm) const;
   };
   struct Arc {
@@ -61,8 +75,8 @@ class PastWays {
   bool covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
   bool arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
-  double line_height(const Way& way, const Vec2& point) const;
-  double arc_height(const Way& way, const Vec2& point) const;
+  double line_height(const Way& way, const Vec2& point, double margin_mm) const;
+  double arc_height(const Way& way, const Vec2& point, double margin_mm) const;
 
   std::vector<Way> ways_;
   std::vector<Arc> arcs_;

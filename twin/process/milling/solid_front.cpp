@@ -176,8 +176,10 @@ FrontContact SolidFront::contact_at(double angle) const {
       }
     }
   }
-  if (found.radius_mm > 0)
-    found.edge_mm = wall + profile_mm(found.radius_mm) - profile_mm(found.inner_mm);
+  if (found.radius_mm <= 0) return found;
+  found.high_mm = wall + cutter_->height_mm(found.radius_mm * kInside) -
+                  cutter_->height_mm(found.inner_mm * kInside);
+  found.edge_mm = wall + profile_mm(found.radius_mm) - profile_mm(found.inner_mm);
   return found;
 }
 
@@ -224,7 +226,7 @@ EngagementLook SolidFront::look(const SolidPoints& solid, const Box& box, double
   const bool centre = cuts_centre(move);
   const double ahead_mm = flat_radius_ >= radius_ ? kAheadOfRadius * radius_ : kAheadOfCell * cell_;
   set_place(move, asked.at, std::max(ahead_mm, kStraightBelow_mm));
-  FrontRays rays(kDirections, radius_);
+  FrontRays rays(kDirections, radius_, flat_radius_ >= radius_);
   rays.sweep([&](double angle) { return contact_at(angle); });
   EngagementLook look = rays.look(asked.anticlockwise);
   look.cuts_centre = centre && look.is_engaged();

@@ -45,10 +45,12 @@ TurningStage::TurningStage(ProcessSite& site)
       speeds_(log_),
       stops_(*stock_.turned(), log_),
       threads_(*stock_.turned(), log_),
+      loads_(log_),
       fallen_before_(stock_.turned()->part().freed().size()) {}
 
 void TurningStage::check_by(const CheckOptions& options) {
   checks_.set_options(options);
+  loads_.set_wish(options.cutting);
   const CollisionWishes& wishes = options.collisions;
   if (wishes.held_by) {
     holding_.set_wishes(wishes);
@@ -70,6 +72,7 @@ void TurningStage::begin_reporting() {
   holders_.begin_reporting();
   noses_.forget();
   threads_.forget();
+  loads_.forget();
   uses_.clear();
   fallen_.clear();
   fallen_before_ = stock_.turned()->part().freed().size();
@@ -96,7 +99,9 @@ void TurningStage::finish(bool whole) {
     noses_.finish();
     report_nothing_cut();
   }
+  loads_.finish();
   for (ToolUse& use : uses_) {
+    use.loads = loads_.loads_of(use.number, use.shape);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }
@@ -138,14 +143,8 @@ bool TurningStage::stands(const Motion& m) const {
 bool TurningStage::mount_for(const Motion& m) {
   if (mounted_) return mounted_->cutter.has_value();
   mounted_ = &resolver_.mount(m.tool, m.source.file == 0 ? m.source.line : 0);
-  const auto known = std::find_if(uses_.begin(), uses_.end(), [&](const ToolUse& use) {
-    return use.number == mounted_->number;
-  });
-  use_ = static_cast<std::size_t>(known - uses_.begin());
-  if (known == uses_.end()) {
-    uses_.push_back(use_of(*mounted_));
-    tell_tool(*mounted_, m, log_);
-  }
+  use_ = place_of_use(uses_, *mounted_, m, log_);
+  if (mounted_->cutter && !is_driven()) loads_.mount(*mounted_->cutter, mounted_->number);
   mount_checks();
   return mounted_->cutter.has_value();
 }
@@ -495,8 +494,32 @@ void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const
   const double rpm = 0.5 * (spindle_rpm_at(m, 0) + spindle_rpm_at(m, 1));
   const bool turns = m.spindle != SpindleState::kStopped && rpm > 0 && step.duration_s > 0;
   if (turns) way.feed_mm_per_rev = way.length_mm / (step.duration_s / 60 * rpm);
-  if (piece.edge_mm > 0) way.chip_mm = way.feed_mm_per_rev * piece.edge_across_mm / piece.edge_mm;
+  const double sine = piece.edge_mm > 0 ? piece.edge_across_mm / piece.edge_mm : 0;
+  way.chip_mm = way.feed_mm_per_rev * sine;
   site_.engagement->add_turned(mounted_->number, *mounted_->cutter, way);
+  if (site_.recorder) site_.recorder->on_turned(site_.motion, way);
+  if (turns && sine > 0) take_load(m, step, way, sine);
+}
+
+/// Where the workpiece is widest on the way: there it takes most torque, and no less power.
+void TurningStage::take_load(const Motion& m, const TimedStep& step, const TurnedWay& way,
+                             double sine) {
+  const double from_mm = std::abs(m.from_mm.x), to_mm = std::abs(m.to_mm.x);
+  const double widest_mm = std::max(from_mm, to_mm), bar_mm = stock_.bounds_mm().max.x;
+  TurnLoads::Part part;
+  part.way = way;
+  part.sine = std::min(sine, 1.0);
+  part.radius_mm = std::min(widest_mm, bar_mm);
+  // What begins or ends beside the bar turns as fast there as it does where it meets it.
+  const double share = widest_mm > bar_mm && from_mm != to_mm
+                           ? (bar_mm - from_mm) / (to_mm - from_mm)
+                       : from_mm >= to_mm ? 0
+                                          : 1;
+  part.rpm = spindle_rpm_at(m, std::clamp(share, 0.0, 1.0));
+  part.source = m.source;
+  part.start_s = step.start_s;
+  part.from_mm = m.from_mm;
+  loads_.take(part);
 }
 
 /// Of what has just been cut.

@@ -26,6 +26,7 @@
 #include "twin/process/turning/speed_checks.h"
 #include "twin/process/turning/stop_checks.h"
 #include "twin/process/turning/thread_checks.h"
+#include "twin/process/turning/turn_loads.h"
 #include "twin/process/turning/turning_checks.h"
 
 namespace kerf {
@@ -76,6 +77,7 @@ class TurningStage final : public Process {
   void cut_piece(const Motion& motion, const TimedStep& step, TurnCut& whole);
   TurnCut sum_of_piece() const;
   void note_engagement(const Motion& motion, const TimedStep& step, const TurnCut& piece);
+  void take_load(const Motion& motion, const TimedStep& step, const TurnedWay& way, double sine);
   void note_fallen(const Motion& motion, const TimedStep& step);
   void report_nothing_cut();
 
@@ -95,6 +97,7 @@ class TurningStage final : public Process {
   SpeedChecks speeds_;
   StopChecks stops_;
   ThreadChecks threads_;
+  TurnLoads loads_;
   std::span<const PathPiece> path_;  ///< of the present motion
   std::vector<CutMove> moves_;       ///< it, as programmed
   std::vector<double> ends_;         ///< of the moves that were made last: ToolPath::moves_of()

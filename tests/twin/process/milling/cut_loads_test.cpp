@@ -36,9 +36,18 @@ class CutLoadsTest : public testing::Test {
            double seconds = 6, double rpm = 2000) {
     loads_.emplace(log_);
     loads_->set_wish(wish);
-    loads_->mount(parse_shape(shape).value(), 1);
+    mount(shape);
     rpm_ = rpm;
     take(look, seconds);
+  }
+  void mount(const std::string& shape) {
+    const Cutter cutter = parse_shape(shape).value();
+    shape_ = cutter.spec();
+    loads_->mount(cutter, 1);
+  }
+  /// Of the tool that is mounted.
+  std::shared_ptr<const ToolLoads> loads_of(int tool) const {
+    return loads_->loads_of(tool, shape_);
   }
   /// At F400.
   void take(const EngagementLook& look, double seconds, double down_rad = 0) {
@@ -66,6 +75,7 @@ class CutLoadsTest : public testing::Test {
   std::optional<CutLoads> loads_;
   std::uint32_t line_ = 0;
   double time_s_ = 0, rpm_ = 0;
+  std::string shape_;
 };
 
 /// 4 teeth, S2000, F400: 0.05 mm a tooth.
@@ -74,7 +84,7 @@ TEST_F(CutLoadsTest, ForcesAreThoseOfTheModel) {
   const Material steel = *in_steel().material;
   const MillingModel model(steel, EdgeProfile::cylinder(5, 0.2), {4, kPi / 4}, {});
   const MillingLoad load = model.load_of({0.05, 0, kPi, 4, 2000});
-  const auto loads = loads_->loads_of(1);
+  const auto loads = loads_of(1);
   ASSERT_NE(loads, nullptr);
   EXPECT_NEAR(loads->chip_mm.most(), 0.05, 1e-9);
   EXPECT_NEAR(loads->force_most_n.nominal, load.force_n.nominal, 1e-9 * load.force_n.nominal);
@@ -89,14 +99,26 @@ TEST_F(CutLoadsTest, ForcesAreThoseOfTheModel) {
 
 TEST_F(CutLoadsTest, NothingIsKnownOfToolsWithoutTeeth) {
   run(in_steel(), "flat:10", slot(4));
-  EXPECT_EQ(loads_->loads_of(1), nullptr);
+  EXPECT_EQ(loads_of(1), nullptr);
 }
 
 TEST_F(CutLoadsTest, ChipsAloneAreKnownWithoutAMaterial) {
   run({}, "flat:10:teeth=4", slot(4));
-  ASSERT_NE(loads_->loads_of(1), nullptr);
-  EXPECT_FALSE(loads_->loads_of(1)->has_forces);
-  EXPECT_NEAR(loads_->loads_of(1)->chip_mm.most(), 0.05, 1e-9);
+  ASSERT_NE(loads_of(1), nullptr);
+  EXPECT_FALSE(loads_of(1)->has_forces);
+  EXPECT_NEAR(loads_of(1)->chip_mm.most(), 0.05, 1e-9);
+}
+
+/// A program may give one number two shapes, each with its own teeth: F400 at S2000.
+TEST_F(CutLoadsTest, EachShapeOfANumberHasItsOwnLoads) {
+  run({}, "flat:10:teeth=4", slot(4));
+  mount("flat:6:teeth=2");
+  take(slot(4, 6), 6);
+  EXPECT_NEAR(loads_of(1)->chip_mm.most(), 0.1, 1e-9);
+  EXPECT_NEAR(loads_of(1)->speed_m_per_min.most(), kPi * 12, 1e-9);
+  mount("flat:10:teeth=4");
+  EXPECT_NEAR(loads_of(1)->chip_mm.most(), 0.05, 1e-9);
+  EXPECT_EQ(loads_->loads_of(1, "flat:8"), nullptr);
 }
 
 /// As it stands in the holder: 40 mm, 22 of them flutes.
@@ -104,7 +126,7 @@ TEST_F(CutLoadsTest, ToolsBendByWhatTheyStandOut) {
   CuttingWish wish = in_steel();
   wish.most_bend_mm = 1e-6;
   run(wish, "flat:10:flute=22:holder=er20:stickout=40:teeth=4", slot(4));
-  const auto kept = loads_->loads_of(1);
+  const auto kept = loads_of(1);
   const ToolLoads& loads = *kept;
   const double each = tip_bends_mm_per_n({10, 10, 22, 40, kCarbideModulus}, 2);
   EXPECT_NEAR(loads.bend_most_mm.nominal, each * loads.force_most_n.nominal, 1e-9);
@@ -116,7 +138,7 @@ TEST_F(CutLoadsTest, ToolsBendByWhatTheyStandOut) {
 TEST_F(CutLoadsTest, WarningsAreOfTheLowEndAndNotesOfTheHighOne) {
   CuttingWish wish = in_steel();
   run(wish, "flat:10:teeth=4", slot(4));
-  const ValueRange power = loads_->loads_of(1)->power_most_kw;
+  const ValueRange power = loads_of(1)->power_most_kw;
   for (const auto& [limit, expected] :
        {std::pair(power.low * 0.99, "over-power worse 2\n"),
         std::pair(power.low * 1.01, "over-power note 3\n"),
@@ -154,9 +176,9 @@ TEST_F(CutLoadsTest, WhatTheMakerAllows) {
 TEST_F(CutLoadsTest, ABallIsCutNoWiderThanItIs) {
   // In a slot the model's section is that of the ball; 1 mm deep it is 6 mm wide.
   run(in_steel(), "ball:10:teeth=2", slot(1, 6));
-  const double whole = loads_->loads_of(1)->power_most_kw.nominal;
+  const double whole = loads_of(1)->power_most_kw.nominal;
   run(in_steel(), "ball:10:teeth=2", slot(1, 2));
-  EXPECT_LT(loads_->loads_of(1)->power_most_kw.nominal, 0.6 * whole);
+  EXPECT_LT(loads_of(1)->power_most_kw.nominal, 0.6 * whole);
 }
 
 TEST_F(CutLoadsTest, TheFiveLongestWaysInTheAir) {

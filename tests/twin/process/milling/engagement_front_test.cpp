@@ -210,6 +210,44 @@ TEST_F(EngagementFrontTest, StraightDownAndDownASlope) {
   EXPECT_FALSE(look("flat:6", way({20, 20, 0}, {40, 20, -2}), 0.5).cuts_centre);
 }
 
+/// A wall that was cut before stands where those moves have left it, not where cells do: at 24.03
+/// of cells of 0.1 mm the outermost of the tool is in a cell that is as high as the block.
+TEST_F(EngagementFrontTest, ALayerIsAsDeepAsItIsBesideItsWall) {
+  for (const std::string shape : {"flat:8", "bull:8:1"}) {
+    for (const double z : {-2.0, -4.0}) cut(shape, way({-10, 20.03, z}, {70, 20.03, z}));
+    const EngagementLook third = look(shape, way({-10, 20.03, -6}, {70, 20.03, -6}));
+    EXPECT_NEAR(third.deep_mm, 2, 0.01) << shape;
+    EXPECT_NEAR(third.angle_rad, kPi, 2 * kDegree) << shape;
+    // Rounding of the program's numbers is no wall, either.
+    EXPECT_NEAR(look(shape, way({-10, 20.031, -6}, {70, 20.031, -6})).deep_mm, 2, 0.01) << shape;
+  }
+  // Round a corner, along an arc, on the other side of the way, down a slope.
+  const auto arc = [](double z) {
+    CutMove turn = way({40.03, 12, z}, {40.03, 12, z});
+    turn.arc = CutArc{{30, 12, z}, {0, 0, 1}, 2 * kPi};
+    return turn;
+  };
+  for (const double z : {-7.0, -8.0}) cut("flat:8", arc(z));
+  EXPECT_NEAR(look("flat:8", arc(-9), 0.3).deep_mm, 1, 0.01);
+  cut("flat:8", way({-10, 20.03, -6}, {70, 20.03, -6}));
+  EXPECT_NEAR(look("flat:8", way({5, 20.03, -6}, {25, 20.03, -8})).deep_mm, 1, 0.05);
+}
+
+/// What is really there at a wall is a deep cut, however thin.
+TEST_F(EngagementFrontTest, AThinDeepCutAlongAWallIsDeep) {
+  for (const double z : {-2.0, -4.0, -6.0}) cut("flat:8", way({-10, 20.03, z}, {70, 20.03, z}));
+  for (const double thick : {0.2, 0.05, 0.02, 0.01}) {
+    const EngagementLook finish =
+        look("flat:8", way({-10, 20.03 + thick, -6}, {70, 20.03 + thick, -6}));
+    EXPECT_NEAR(finish.deep_mm, 6, 0.01) << thick;
+    EXPECT_NEAR(finish.wide_mm, thick, 0.01 + 0.1 * thick) << thick;
+  }
+  // The upper layer was 0.5 mm wider: there only 4 mm are left.
+  cut("flat:8", way({-10, 20.53, -2}, {70, 20.53, -2}));
+  EXPECT_NEAR(look("flat:8", way({-10, 20.33, -6}, {70, 20.33, -6})).deep_mm, 4, 0.01);
+  EXPECT_NEAR(look("flat:8", way({-10, 20.58, -6}, {70, 20.58, -6})).deep_mm, 6, 0.01);
+}
+
 TEST_F(EngagementFrontTest, AMoveThatIsHeldBackCountsAsCut) {
   const CutMove held = way({10, 20, -2}, {40, 20, -2});
   EXPECT_FALSE(look("flat:8", way({40, 20, -2}, {10, 20, -2}), 0.5, &held).is_engaged());

@@ -30,6 +30,7 @@ struct PastMove {
 struct EngagementTruth {
   double arc = 0, entry = 0, exit = 0;
   double effective_mm = 0;
+  double deep_mm = 0;  ///< the highest over what the tool leaves, of all places in material
 };
 
 /// Cutters outlive it.
@@ -87,6 +88,7 @@ class EngagementOracle {
     const Vec2 ahead = glm::normalize(Vec2(next - tip)), left(-ahead.y, ahead.x);
     const double radius = cutter.radius_mm();
     const bool flat = cutter.height_mm(radius * (1 - 1e-9)) <= 0;
+    EngagementTruth truth;
     // Out to where is it in material, in each direction?
     std::vector<double> out(static_cast<std::size_t>(angles), 0.0);
     double farthest = 0;
@@ -94,19 +96,27 @@ class EngagementOracle {
       const double phi = kPi * (k + 0.5) / angles;  // from the left
       const Vec2 way = std::cos(phi) * left + std::sin(phi) * ahead;
       const int radii = flat ? 1 : most_radii;
-      for (int n = radii; n > 0 && out[static_cast<std::size_t>(k)] == 0; --n) {
+      // In some directions the highest of all radii, too.
+      const bool to_middle = !flat && k % kDeepEach == 0;
+      for (int n = radii; n > 0 && (to_middle || out[static_cast<std::size_t>(k)] == 0); --n) {
         const double r = radius * (1 - 1e-9) * n / radii;
         const Vec2 p = Vec2(tip) + r * way;
         const double own = std::max(tip.z, blank_.min.z) + cutter.height_mm(r);
         if (own + kOracleFilm_mm >= blank_.max.z) continue;
-        if (height(p, cutter, move, at) > own + kOracleFilm_mm && is_on_way(p, cutter, move, at))
-          out[static_cast<std::size_t>(k)] = r;
+        const double stands = height(p, cutter, move, at);
+        if (stands <= own + kOracleFilm_mm || !is_on_way(p, cutter, move, at)) continue;
+        out[static_cast<std::size_t>(k)] = std::max(out[static_cast<std::size_t>(k)], r);
+        // What the way itself has just cut beside the place stands above it, all the same.
+        const double stood = flat ? stands : height(p, cutter, move, long_before(cutter, move, at));
+        const double leaves =
+            own + cutter.height_mm(r * std::abs(std::cos(phi))) - cutter.height_mm(r);
+        truth.deep_mm = std::max(truth.deep_mm, stood - leaves);
       }
       farthest = std::max(farthest, out[static_cast<std::size_t>(k)]);
     }
-    EngagementTruth truth;
     if (farthest <= 0) return truth;
     truth.effective_mm = 2 * farthest;
+    if (!flat) return weighed(truth, cutter, move, at);
     int first = -1, last = -1, count = 0;
     for (int k = 0; k < angles; ++k) {
       if (out[static_cast<std::size_t>(k)] < 0.5 * farthest) continue;
@@ -117,6 +127,60 @@ class EngagementOracle {
     return truth;
   }
 
+  /// What is not flat: its directions count by how high its edge is in material there; what is
+  /// thinner than 0.05 mm by its thickness.
+  EngagementTruth weighed(EngagementTruth truth, const Cutter& cutter, const CutMove& move,
+                          double at) const {
+    constexpr int kAngles = 180, kRadii = 100;
+    constexpr double kThin_mm = 0.05;
+    const double part = at + kOracleStep_mm / way_mm(move);
+    const Vec3 tip = place(move, part), next = place(move, part + 1e-6 / way_mm(move));
+    const Vec2 ahead = glm::normalize(Vec2(next - tip)), left(-ahead.y, ahead.x);
+    const double radius = cutter.radius_mm() * (1 - 1e-9), floor = std::max(tip.z, blank_.min.z);
+    const double before = long_before(cutter, move, at);
+    double sum = 0, sum_phi = 0, sum_phi2 = 0, sum_square = 0;
+    for (int k = 0; k < kAngles; ++k) {
+      const double phi = kPi * (k + 0.5) / kAngles;
+      const Vec2 way = std::cos(phi) * left + std::sin(phi) * ahead;
+      const auto over = [&](double r) {
+        const Vec2 p = Vec2(tip) + r * way;
+        const double own = floor + cutter.height_mm(r);
+        if (own + kOracleFilm_mm >= blank_.max.z) return 0.0;
+        const double stands = height(p, cutter, move, at);
+        if (stands <= own + kOracleFilm_mm || !is_on_way(p, cutter, move, at)) return 0.0;
+        return height(p, cutter, move, before) - own;
+      };
+      double high = over(radius);  // of what is above the profile's end
+      for (int n = 0; n < kRadii; ++n) {
+        // Closer together farther out, where a ball is steep.
+        const double r0 = radius * std::sin(kPi / 2 * n / kRadii);
+        const double r1 = radius * std::sin(kPi / 2 * (n + 1) / kRadii);
+        const double rise = cutter.height_mm(r1) - cutter.height_mm(r0);
+        if (rise <= 0) continue;
+        const double depth = over(0.5 * (r0 + r1));
+        const double thick = depth * (r1 - r0) / std::hypot(r1 - r0, rise);
+        high += rise * std::min(1.0, thick / kThin_mm);
+      }
+      sum += high, sum_square += high * high;
+      sum_phi += high * phi, sum_phi2 += high * phi * phi;
+    }
+    if (sum <= 0) return truth;
+    const double middle = sum_phi / sum;
+    const double half = std::sqrt(std::max(0.0, 3 * (sum_phi2 / sum - middle * middle)));
+    truth.entry = std::max(0.0, middle - half), truth.exit = std::min(kPi, middle + half);
+    truth.arc = std::min(kPi / kAngles * sum * sum / sum_square, truth.exit - truth.entry);
+    return truth;
+  }
+
+  /// So far an arc may come back to what it has cut.
+  static double long_before(const Cutter& cutter, const CutMove& move, double at) {
+    if (!move.arc) return 0;
+    const double radius = glm::length(Vec2(move.from_mm - move.arc->center_mm));
+    return std::max(
+        0.0, at - std::min(kPi, 2 * cutter.radius_mm() / radius) / std::abs(move.arc->sweep_rad));
+  }
+
+  static constexpr int kDeepEach = 6;
   static double way_mm(const CutMove& m) {
     if (!m.arc) return glm::length(Vec2(m.to_mm - m.from_mm));
     return std::abs(m.arc->sweep_rad) * glm::length(Vec2(m.from_mm - m.arc->center_mm));
@@ -185,6 +249,9 @@ class EngagementOracle {
 struct EngagementErrors {
   double most = 0;
   int looks = 0, within = 0;
+  /// Of depths: those off by more than kSameDepth_mm.
+  int deeper = 0, shallower = 0;
+  static constexpr double kSameDepth_mm = 0.02;
   std::vector<double> all;
   void add(const EngagementLook& found, const EngagementTruth& truth) {
     const double off = found.is_engaged() && truth.arc > 0
@@ -193,6 +260,8 @@ struct EngagementErrors {
                                        std::abs(found.exit_rad - truth.exit)})
                            : std::max(found.angle_rad, truth.arc);
     all.push_back(off / kOracleDegree);
+    if (found.deep_mm > truth.deep_mm + kSameDepth_mm) ++deeper;
+    if (found.deep_mm < truth.deep_mm - kSameDepth_mm) ++shallower;
     ++looks;
     if (off <= 2 * kOracleDegree) ++within;
     most = std::max(most, off);
@@ -204,7 +273,9 @@ struct EngagementErrors {
           all[static_cast<std::size_t>(share * (static_cast<double>(all.size()) - 1))]);
     };
     return std::to_string(within) + " of " + std::to_string(looks) + " within 2 degrees; p50 " +
-           at(0.5) + " p90 " + at(0.9) + " p95 " + at(0.95) + " p99 " + at(0.99) + " most " + at(1);
+           at(0.5) + " p90 " + at(0.9) + " p95 " + at(0.95) + " p99 " + at(0.99) + " most " +
+           at(1) + "; too deep " + std::to_string(deeper) + ", not deep enough " +
+           std::to_string(shallower);
   }
 };
 

@@ -1,0 +1,130 @@
+#include "twin/process/turning/turn_loads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/translate.h"
+#include "stock/cutter/turning_shape.h"
+#include "twin/job/load_text.h"
+#include "twin/process/finding_at.h"
+
+namespace kerf {
+namespace {
+
+/// What is more than a limit by less than this is rounding.
+constexpr double kOver = 1.005;
+
+std::string range_text(const ValueRange& range, const char* unit) {
+  return trf("{} {} ({} to {})", load_text(range.nominal), unit, load_text(range.low),
+             load_text(range.high));
+}
+
+ValueRange exactly(double value) { return {value, value, value}; }
+
+}  // namespace
+
+void TurnLoads::mount(const Cutter& cutter, int number) {
+  const auto known = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& tool) {
+    return tool.number == number && tool.shape == cutter.spec();
+  });
+  tool_ = static_cast<std::size_t>(known - tools_.begin());
+  if (known != tools_.end()) return;
+  Tool& tool = tools_.emplace_back();
+  tool.number = number;
+  tool.shape = cutter.spec();
+  tool.most_feed_mm = insert_use_of(cutter).max_feed_mm;
+}
+
+std::shared_ptr<const ToolLoads> TurnLoads::loads_of(int number, const std::string& shape) const {
+  for (const Tool& tool : tools_) {
+    if (tool.number == number && tool.shape == shape && tool.loads->chip_mm.seconds() > 0)
+      return tool.loads;
+  }
+  return nullptr;
+}
+
+void TurnLoads::forget() {
+  tools_.clear();
+  tool_ = 0;
+}
+
+void TurnLoads::note(Trouble trouble, const Part& part, double seconds, const ValueRange& range) {
+  Worst& worst = tools_[tool_].worst[trouble];
+  worst.seconds += seconds;
+  if (worst.is_there && range.nominal <= worst.range.nominal) return;
+  worst = {true, range, worst.seconds, part.source, part.start_s, part.from_mm};
+}
+
+void TurnLoads::take(const Part& part) {
+  const TurnedWay& way = part.way;
+  if (tool_ >= tools_.size() || way.cut_mm <= 0 || way.feed_mm_per_rev <= 0 || part.rpm <= 0)
+    return;
+  Tool& tool = tools_[tool_];
+  ToolLoads& loads = *tool.loads;
+  const double seconds = way.seconds * way.cut_mm / way.length_mm;
+  const TurningLoad load =
+      turning_load(wish_.material.value_or(Material{}),
+                   {way.depth_mm, way.feed_mm_per_rev, part.sine, part.radius_mm, part.rpm});
+  loads.chip_mm.add(load.chip_mm, seconds, part.source);
+  loads.speed_m_per_min.add(load.speed_m_per_min, seconds, part.source);
+  if (tool.most_feed_mm && way.feed_mm_per_rev > *tool.most_feed_mm * kOver)
+    note(kFeed, part, seconds, exactly(way.feed_mm_per_rev));
+  if (!wish_.material) return;
+  loads.has_forces = true;
+  const ValueRange power_kw = load.power_w.times(1e-3);
+  loads.force_n.add(load.force_n, seconds, part.source, loads.force_most_n);
+  loads.torque_nm.add(load.torque_nm, seconds, part.source, loads.torque_most_nm);
+  loads.power_kw.add(power_kw, seconds, part.source, loads.power_most_kw);
+  const std::optional<SpeedRange>& speeds =
+      wish_.material->speed_carbide ? wish_.material->speed_carbide : wish_.material->speed_hss;
+  if (speeds && load.speed_m_per_min > speeds->high * kOver)
+    note(kSpeed, part, seconds, exactly(load.speed_m_per_min));
+  if (wish_.spindle_power_kw > 0 && power_kw.high > wish_.spindle_power_kw)
+    note(kPower, part, seconds, power_kw);
+  if (wish_.spindle_torque_nm > 0 && load.torque_nm.high > wish_.spindle_torque_nm)
+    note(kTorque, part, seconds, load.torque_nm);
+}
+
+void TurnLoads::tell(const Tool& tool, Trouble trouble, FindingId id, double limit,
+                     const std::string& text) {
+  const Worst& worst = tool.worst[trouble];
+  const Severity severity = worst.range.low > limit ? Severity::kWarning : Severity::kNote;
+  Finding finding = finding_at(id, severity, worst.source, worst.time_s);
+  finding.tool = tool.number;
+  finding.position_mm = worst.at_mm;
+  finding.text = text + trf(" (for {:.1f} s in all)", worst.seconds);
+  log_.add(std::move(finding));
+}
+
+void TurnLoads::tell(const Tool& tool) {
+  const auto& worst = tool.worst;
+  const double never = std::numeric_limits<double>::infinity();
+  if (worst[kFeed].is_there)
+    tell(tool, kFeed, FindingId::kChipLoadHigh, *tool.most_feed_mm,
+         trf("feed {:.3g} mm a turn, above the {:.3g} mm of max_f=", worst[kFeed].range.nominal,
+             *tool.most_feed_mm));
+  if (worst[kSpeed].is_there) {
+    const std::optional<SpeedRange>& speeds =
+        wish_.material->speed_carbide ? wish_.material->speed_carbide : wish_.material->speed_hss;
+    tell(tool, kSpeed, FindingId::kCuttingSpeed, never,
+         trf("cutting speed {:.0f} m/min; of {} up to {:.0f} is known", worst[kSpeed].range.nominal,
+             wish_.material->name, speeds->high));
+  }
+  if (worst[kPower].is_there)
+    tell(tool, kPower, FindingId::kOverPower, wish_.spindle_power_kw,
+         trf("takes {}; the spindle has {:g} kW", range_text(worst[kPower].range, "kW"),
+             wish_.spindle_power_kw));
+  if (worst[kTorque].is_there)
+    tell(tool, kTorque, FindingId::kOverTorque, wish_.spindle_torque_nm,
+         trf("takes {}; the spindle has {:g} Nm", range_text(worst[kTorque].range, "Nm"),
+             wish_.spindle_torque_nm));
+}
+
+void TurnLoads::finish() {
+  for (const Tool& tool : tools_) tell(tool);
+}
+
+}  // namespace kerf

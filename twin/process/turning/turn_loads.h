@@ -1,0 +1,79 @@
+// twin/process/turning/turn_loads.h - what the cuts of turning tools take: chips, speeds and, of a
+// known material, force, torque, power; and what of it is too much.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/geometry.h"
+#include "cutting/turning_force.h"
+#include "interp_bridge/motion.h"
+#include "stock/cutter/cutter.h"
+#include "twin/findings/finding.h"
+#include "twin/job/tool_loads.h"
+#include "twin/process/cutting_wish.h"
+#include "twin/process/engagement.h"
+
+namespace kerf {
+
+/// Is told of each part of a feed move how deep the tool cuts and what it feeds. What is too much
+/// is told once a tool, where it is worst, when the program is over: a warning where the low end of
+/// a range is beyond the limit, a note where the high end alone is. One thread.
+class TurnLoads {
+ public:
+  explicit TurnLoads(FindingLog& log) : log_(log) {}
+  /// Before the first tool.
+  void set_wish(const CuttingWish& wish) { wish_ = wish; }
+
+  void mount(const Cutter& cutter, int tool);
+  struct Part {
+    TurnedWay way;
+    double sine = 1;  ///< of the lead angle: TurningCut
+    /// Of the workpiece where it is cut at most, and how fast it turns there.
+    double radius_mm = 0, rpm = 0;
+    SourceRef source;
+    double start_s = 0;
+    Vec3 from_mm{0};
+  };
+  void take(const Part& part);
+  /// The program is over: what is too much.
+  void finish();
+  void forget();
+
+  /// Of the tool of that number with that shape (Cutter::spec()). Null: it has not cut while the
+  /// workpiece turned.
+  std::shared_ptr<const ToolLoads> loads_of(int tool, const std::string& shape) const;
+
+ private:
+  enum Trouble : std::uint8_t { kFeed, kSpeed, kPower, kTorque, kTroubles };
+  struct Worst {
+    bool is_there = false;
+    ValueRange range;
+    double seconds = 0;  ///< in all
+    SourceRef source;
+    double time_s = 0;
+    Vec3 at_mm{0};
+  };
+  struct Tool {
+    int number = 0;
+    std::string shape;
+    std::optional<double> most_feed_mm;
+    std::shared_ptr<ToolLoads> loads = std::make_shared<ToolLoads>();
+    std::array<Worst, kTroubles> worst{};
+  };
+  void note(Trouble trouble, const Part& part, double seconds, const ValueRange& range);
+  void tell(const Tool& tool);
+  void tell(const Tool& tool, Trouble trouble, FindingId id, double limit, const std::string& text);
+
+  FindingLog& log_;
+  CuttingWish wish_;
+  std::vector<Tool> tools_;
+  std::size_t tool_ = 0;
+};
+
+}  // namespace kerf
