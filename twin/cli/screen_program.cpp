@@ -66,7 +66,9 @@ void ScreenProgram::watch(const std::stop_token& stop) {
     }
     // A LinuxCNC that has ended leaves the workpiece where it is.
     const bool is_away = program.empty() && !file_.path().has_value();
-    if (is_due && !is_away && !runs_() && (program != followed || !program.empty())) {
+    // Where nothing is followed, as after a crash, a program that runs already is joined.
+    const bool may_go_on = followed.empty() || !runs_();
+    if (is_due && !is_away && may_go_on && !(program.empty() && followed.empty())) {
       is_due = !on_load_(program);
       if (!is_due) followed = program;
     }

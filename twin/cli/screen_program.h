@@ -28,7 +28,8 @@ class ScreenProgram {
  public:
   /// `options`: of the watch. `on_load` is called by the thread when the watch is to go on along
   /// another program, or along the same one as it is now on the disk (empty: along none); false: it
-  /// cannot now, and is asked again. Not while `runs()`: LinuxCNC goes on with what it has read.
+  /// cannot now, and is asked again. Not while `runs()`, unless none is followed yet: LinuxCNC goes
+  /// on with what it has read.
   ScreenProgram(std::string kerf_status, std::string nml_file, WrittenOptions options,
                 std::function<bool()> runs, std::function<bool(const std::string&)> on_load);
   ~ScreenProgram();
