@@ -10,6 +10,7 @@
 #include <mutex>
 #include <shared_mutex>
 
+#include "base/catalogue_file.h"
 #include "base/text_scan.h"
 
 // glibc's: counts changes of the language, so that gettext forgets what it has looked up (manual of
@@ -43,9 +44,9 @@ std::filesystem::path folder() {
 /// gettext translates nothing in the locale C, whatever LANGUAGE says; which other one is in force
 /// does not matter, but there must be one.
 void leave_locale_c(const std::string& code) {
-  const std::string upper = to_upper(code);
-  for (const std::string& name :
-       {std::string(), code + "_" + upper + ".UTF-8", std::string("en_US.UTF-8")}) {
+  // "de_DE", "zh_CN"
+  const std::string place = contains(code, "_") ? code : code + "_" + to_upper(code);
+  for (const std::string& name : {std::string(), place + ".UTF-8", std::string("en_US.UTF-8")}) {
     const char* found = std::setlocale(LC_MESSAGES, name.c_str());
     const std::string_view in_force = found ? found : "C";
     if (in_force != "C" && in_force != "POSIX" && !in_force.starts_with("C.")) return;
@@ -97,12 +98,17 @@ std::string trnf(const char* one, const char* many, unsigned long n) {
   return formatted(n == 1 ? one : many, trn(one, many, n), fmt::make_format_args(n));
 }
 
+std::string catalogue_file(const std::string& code) {
+  if (code == "en") return "";
+  return folder() / code / "LC_MESSAGES" / "kerf.mo";
+}
+
 std::vector<std::string> languages() {
   std::vector<std::string> all;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder(), none)) {
     const std::string code = entry.path().filename();
-    if (code != "en" && std::filesystem::exists(entry.path() / "LC_MESSAGES" / "kerf.mo", none)) {
+    if (code != "en" && std::filesystem::exists(catalogue_file(code), none)) {
       all.push_back(code);
     }
   }

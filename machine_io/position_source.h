@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+#include "machine_io/spindle_load.h"
+
 namespace kerf {
 
 /// Joints 0..8, or axes X Y Z A B C U V W: which of the two, the configuration says.
@@ -46,6 +48,9 @@ struct AxisSample {
   ProgramState program = ProgramState::kUnknown;
   double tool_offset_z_mm = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
   double spindle_rpm = std::numeric_limits<double>::quiet_NaN();       ///< signed; NaN: not given
+  /// Of the spindle, as the machine itself tells it, in load_unit; NaN: not given.
+  double load = std::numeric_limits<double>::quiet_NaN();
+  LoadUnit load_unit = LoadUnit::kPercentOfPower;
 
   bool has(std::size_t index) const { return (known >> index & 1U) != 0; }
   void set(std::size_t index, double value) {

@@ -122,7 +122,7 @@ struct Recorder::Writer {
         fd(file),
         wake_fd(event),
         ring(slots),
-        lines(head.axes, head.trigger, head.program) {}
+        lines(head.axes, head.trigger, head.program, head.load.has_value()) {}
   ~Writer() {
     if (fd >= 0) ::close(fd);
     ::close(wake_fd);

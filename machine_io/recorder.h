@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,9 +30,10 @@ struct RecordingHead {
   std::string source;  ///< PositionSource::describe() of what is recorded
   CoordinateKind kind = CoordinateKind::kJoints;
   CoordinateFrame frame = CoordinateFrame::kMachine;
-  std::uint16_t axes = 0b111;  ///< bit i: position[i] gets a column; others are not recorded
-  bool trigger = false;        ///< AxisSample::trigger gets one, too
-  bool program = false;        ///< and AxisSample::program
+  std::uint16_t axes = 0b111;    ///< bit i: position[i] gets a column; others are not recorded
+  bool trigger = false;          ///< AxisSample::trigger gets one, too
+  bool program = false;          ///< and AxisSample::program
+  std::optional<LoadUnit> load;  ///< and AxisSample::load, in this unit
   /// Of a file that is read: it has sums (README.md). The recorder writes them always.
   bool sums = false;
   /// CLOCK_REALTIME, ns; kNoTime: the recorder takes the time at which it creates the file.

@@ -184,7 +184,9 @@ std::string recording_head_text(const RecordingHead& head) {
   }
   text += ",tool,line,tool_offset_z,spindle_rpm";
   if (head.trigger) text += ",trigger";
-  text += head.program ? ",program\n" : "\n";
+  if (head.program) text += ",program";
+  if (head.load) text += fmt::format(",{}", column_of(*head.load));
+  text += '\n';
   return text;
 }
 
@@ -256,6 +258,10 @@ char* RecordingLines::append(const AxisSample& sample, char* out) {
     *out++ = ',';
     const std::string_view state = program_state_text(sample.program);
     out = std::copy(state.begin(), state.end(), out);
+  }
+  if (load_) {
+    *out++ = ',';
+    out = append_known(sample.load, out);
   }
   *out++ = '\n';
   return out;

@@ -53,8 +53,9 @@ class RecordingLines {
  public:
   static constexpr std::size_t kLongestLine_bytes = 512;
 
-  explicit RecordingLines(std::uint16_t axes, bool trigger = false, bool program = false)
-      : axes_(axes), trigger_(trigger), program_(program) {}
+  explicit RecordingLines(std::uint16_t axes, bool trigger = false, bool program = false,
+                          bool load = false)
+      : axes_(axes), trigger_(trigger), program_(program), load_(load) {}
 
   /// Puts the line with its LF at `out`, which has room for kLongestLine_bytes; returns its end.
   char* append(const AxisSample& sample, char* out);
@@ -67,6 +68,7 @@ class RecordingLines {
   std::uint16_t axes_;
   bool trigger_;
   bool program_;
+  bool load_;
   std::uint16_t written_ = 0;  // bit i: last_[i] is what an empty cell would mean
   std::array<double, kMaxPositions> last_{};
 };

@@ -367,6 +367,7 @@ struct Moment {
   double feed_mm_per_min = 0;  ///< Programmed; 0 while traversing, or where nobody knows it.
   /// Of a machine that is watched: from its positions of the last moments.
   std::optional<double> measured_mm_per_min;
+  std::string spindle_load;  ///< "23.1 % (18 to 41)", measured and expected; "": not known.
   bool is_traverse = false;
   std::string coolant;      ///< "mist", "flood", "".
   std::string work_offset;  ///< "G54"

@@ -40,6 +40,7 @@ std::vector<std::pair<std::string, const CanSignal*>> mapped_signals(const CanMa
   if (map.spindle) all.emplace_back("spindle", &*map.spindle);
   if (map.tool_offset_z) all.emplace_back("tool_offset_z", &*map.tool_offset_z);
   if (map.trigger) all.emplace_back("trigger", &*map.trigger);
+  if (map.load) all.emplace_back("load", &*map.load);
   return all;
 }
 
@@ -132,11 +133,14 @@ CanAssembler::CanAssembler(const CanMap& map) : gather_ns_(nanoseconds(map.gathe
   names_[kSpindle] = "spindle";
   names_[kToolOffsetZ] = "tool_offset_z";
   names_[kTrigger] = "trigger";
+  names_[kLoad] = "load";
   if (map.tool) add(kTool, *map.tool);
   if (map.line) add(kLine, *map.line);
   if (map.spindle) add(kSpindle, *map.spindle);
   if (map.tool_offset_z) add(kToolOffsetZ, *map.tool_offset_z);
   if (map.trigger) add(kTrigger, *map.trigger);
+  if (map.load) add(kLoad, *map.load);
+  load_unit_ = map.load_unit;
   sync_id_ = sync_id_of(map);
 }
 
@@ -167,6 +171,8 @@ bool CanAssembler::note_unfit(std::size_t slot, const CanFrame& frame, CanFit fi
     // Tools and lines are counts; anything else is a wrong map or a damaged frame.
     if (slot < kMaxPositions) {
       if (value >= slots_[slot].low && value <= slots_[slot].high) return false;
+    } else if (slot == kLoad) {
+      if (std::abs(value) <= kMostLoad) return false;
     } else if (slot != kTool && slot != kLine && slot != kTrigger) {
       return false;
     } else if (std::round(value) >= 0.0 &&
@@ -317,6 +323,10 @@ AxisSample CanAssembler::gathered_sample() const {
       case kTrigger:
         sample.trigger = static_cast<std::int32_t>(std::lround(slot.value));
         break;
+      case kLoad:
+        sample.load = slot.value;
+        sample.load_unit = load_unit_;
+        break;
       default:
         sample.position[used_[i]] = slot.value;
         sample.known = static_cast<std::uint16_t>(sample.known | 1U << used_[i]);
@@ -358,6 +368,8 @@ std::string CanAssembler::unfit_text() const {
         return trf("{}{:g} in {}, beyond min or max and what a machine may overshoot", what,
                    unfit_.value, name);
       }
+      if (unfit_.slot == kLoad)
+        return trf("{}{:g} in {}, more than any spindle has", what, unfit_.value, name);
       return trf("{}{} in {}, which must be 0 or above", what, unfit_.value, name);
     case CanFit::kOther:
       break;

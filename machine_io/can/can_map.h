@@ -33,6 +33,8 @@ struct CanMap {
   std::optional<CanSignal> spindle;        ///< rpm, signed
   std::optional<CanSignal> tool_offset_z;  ///< mm
   std::optional<CanSignal> trigger;        ///< of a punch: 0 off, else on
+  std::optional<CanSignal> load;           ///< of the spindle, in load_unit
+  LoadUnit load_unit = LoadUnit::kPercentOfPower;
 
   /// The drives of one machine answer one after the other. What comes within this time can make
   /// one sample; ms, 0.1 to 10 000. Longer than the bus needs for one cycle; when drives send only
@@ -127,7 +129,8 @@ class CanAssembler {
   static constexpr std::size_t kSpindle = kLine + 1;
   static constexpr std::size_t kToolOffsetZ = kSpindle + 1;
   static constexpr std::size_t kTrigger = kToolOffsetZ + 1;
-  static constexpr std::size_t kSlots = kTrigger + 1;
+  static constexpr std::size_t kLoad = kTrigger + 1;
+  static constexpr std::size_t kSlots = kLoad + 1;
 
   struct Slot {
     CanSignal signal;
@@ -162,6 +165,7 @@ class CanAssembler {
   std::size_t used_count_ = 0;
   std::int64_t gather_ns_ = 0;
   int sync_id_ = -1;
+  LoadUnit load_unit_ = LoadUnit::kPercentOfPower;
   CanCycle cycle_{0, 0, false};
   std::int64_t newest_ns_ = AxisSample::kNoTime;
   std::uint64_t incomplete_ = 0;

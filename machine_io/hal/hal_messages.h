@@ -17,6 +17,7 @@ constexpr const char* tr_noop(const char* text) { return text; }
 enum class HalMessage {
   kRateRange,
   kRateMissing,
+  kLoadMissing,
   kUnknownArgument,
   kTerminal,
   kNoLinuxCnc,
@@ -44,6 +45,8 @@ constexpr const char* text_of(HalMessage message) {
       return tr_noop("--rate {}: a number of readings per second, 1 to 1000");
     case HalMessage::kRateMissing:
       return tr_noop("--rate: a number must follow");
+    case HalMessage::kLoadMissing:
+      return tr_noop("--load: the name of a pin must follow");
     case HalMessage::kUnknownArgument:
       return tr_noop("unknown argument {} (kerf-hal --help)");
     case HalMessage::kTerminal:

@@ -41,6 +41,23 @@ constexpr std::size_t kLine = kVelocity + 1;
 constexpr std::size_t kTool = kLine + 1;
 constexpr std::size_t kServoPeriod = kTool + 1;
 constexpr std::size_t kBits = kServoPeriod + 1;
+constexpr std::size_t kLoad = kBits + kBitPins.size();  // the last, and not always there
+
+/// No type of HAL.
+constexpr auto kAnyNumber = HAL_TYPE_UNSPECIFIED;
+
+double number_of(hal_type_t type, const hal_data_u& value) {
+  switch (type) {
+    case HAL_FLOAT:
+      return value.f;
+    case HAL_S32:
+      return value.s;
+    case HAL_U32:
+      return value.u;
+    default:
+      return kHalAbsent;
+  }
+}
 
 }  // namespace
 
@@ -70,6 +87,7 @@ struct HalPins::Wanted {
   std::string name;
   hal_type_t type;
   const hal_data_u* value = nullptr;  ///< nullptr: no such pin now
+  hal_type_t found_type = HAL_TYPE_UNSPECIFIED;
 };
 
 HalPresence look_for_hal() {
@@ -77,7 +95,7 @@ HalPresence look_for_hal() {
   return errno == ENOENT ? HalPresence::kNone : HalPresence::kForbidden;
 }
 
-std::unique_ptr<HalPins> HalPins::attach(std::string& trouble) {
+std::unique_ptr<HalPins> HalPins::attach(const std::string& load_pin, std::string& trouble) {
   std::unique_ptr<HalPins> pins(new HalPins);
   const std::string name = "kerf-hal-" + std::to_string(getpid());
   pins->component_ = hal_init(name.c_str());
@@ -100,6 +118,7 @@ std::unique_ptr<HalPins> HalPins::attach(std::string& trouble) {
   pins->wanted_.push_back({"iocontrol.0.tool-number", HAL_S32});
   pins->wanted_.push_back({"motion.servo.last-period", HAL_U32});
   for (const BitPin& pin : kBitPins) pins->wanted_.push_back({pin.name, HAL_BIT});
+  if (!load_pin.empty()) pins->wanted_.push_back({load_pin, kAnyNumber});
   if (!pins->create_status_pins(trouble)) return nullptr;
   hal_ready(pins->component_);
   return pins;
@@ -156,8 +175,9 @@ void HalPins::find(Wanted& pin) {
   hal_data_u* value = nullptr;
   bool connected = false;
   const bool found = hal_get_pin_value_by_name(pin.name.c_str(), &type, &value, &connected) == 0 &&
-                     type == pin.type;
+                     (type == pin.type || pin.type == kAnyNumber);
   pin.value = found ? value : nullptr;
+  pin.found_type = type;
 }
 
 /// HAL searches its whole list for each name, so only the positions are found again each time.
@@ -214,6 +234,9 @@ HalPins::Reading HalPins::read(HalSampleRecord& record) {
   }
   record.spindle_rpm = number(kSpindle);
   record.velocity = number(kVelocity);
+  record.load = kHalAbsent;
+  if (wanted_.size() > kLoad && wanted_[kLoad].value != nullptr)
+    record.load = number_of(wanted_[kLoad].found_type, *wanted_[kLoad].value);
   record.known = kHalPinsTaken;
   record.on = taken() ? kHalPinsTaken : 0U;
   const auto integer = [&](std::size_t place, HalBit bit, std::int32_t& out) {

@@ -29,7 +29,8 @@ class HalPins {
  public:
   /// nullptr with `trouble` filled if HAL refuses. Creates the kerf.* pins, unless another
   /// component has pins of these names: then taken() is true and show() has no effect.
-  static std::unique_ptr<HalPins> attach(std::string& trouble);
+  /// `load_pin`: a number of whichever type, the spindle's load; empty: none.
+  static std::unique_ptr<HalPins> attach(const std::string& load_pin, std::string& trouble);
   HalPins(const HalPins&) = delete;
   HalPins& operator=(const HalPins&) = delete;
   /// Sets the kerf.* pins to "no announcement, stale, not alive" (a signal keeps the last value of

@@ -94,6 +94,11 @@ AxisSample sample_of(const HalSampleRecord& record, const HalSettings& settings)
   if (sample.program == ProgramState::kIdle && sample.line > 0) sample.line = 0;
   sample.tool_offset_z_mm = record.tool_offset[2] * settings.mm_per_unit;
   sample.spindle_rpm = record.spindle_rpm;
+  if (settings.load) {
+    const double load = record.load * settings.load->scale + settings.load->offset;
+    if (std::abs(load) <= kMostLoad) sample.load = load;
+    sample.load_unit = settings.load->unit;
+  }
   return sample;
 }
 
@@ -169,6 +174,7 @@ struct HalSource::Reading {
   void read_messages();
   bool has_record() const { return child && end - begin >= sizeof(HalSampleRecord); }
   bool take_record();
+  void look_for_load();
   void fail(std::string reason);
   void end_child(std::string why, bool is_error);
   void child_has_ended();
@@ -176,6 +182,7 @@ struct HalSource::Reading {
   HalSettings settings;
   SourceStatus status;
   HalSampleRecord record;  ///< the last good one
+  bool load_is_missing = false;
 
   std::optional<HalChild> child;
   bool child_has_spoken = false;  ///< at least one record
@@ -213,7 +220,12 @@ void HalSource::Reading::start_child() {
                     ? tr("kerf-hal is not installed (it is built where linuxcnc-uspace-dev is)")
                     : trf("{} is no executable file", settings.kerf_hal_path));
   }
-  Result<HalChild> started = HalChild::start(path, {"--rate", fmt::format("{}", settings.rate_hz)});
+  std::vector<std::string> arguments{"--rate", fmt::format("{}", settings.rate_hz)};
+  if (settings.load) {
+    arguments.emplace_back("--load");
+    arguments.push_back(settings.load->pin);
+  }
+  Result<HalChild> started = HalChild::start(path, arguments);
   if (!started) return fail(started.error());
   child = std::move(*started);
   child_has_spoken = false;
@@ -353,6 +365,18 @@ bool HalSource::Reading::take_record() {
   return true;
 }
 
+/// LinuxCNC itself has no such pin: a name that nobody has is a wrong one.
+void HalSource::Reading::look_for_load() {
+  if (!settings.load) return;
+  const bool is_missing = std::isnan(record.load);
+  if (is_missing == load_is_missing) return;
+  load_is_missing = is_missing;
+  status.trouble.clear();
+  if (!is_missing) return;
+  status.trouble =
+      trf("HAL has no number under the name {} (source.map.load.pin)", settings.load->pin);
+}
+
 HalSource::HalSource(HalSettings settings)
     : reading_(std::make_unique<Reading>(std::move(settings))) {}
 
@@ -368,6 +392,7 @@ PositionSource::Next HalSource::next(AxisSample& sample, milliseconds patience) 
     if (reading.take_record()) {
       sample = sample_of(reading.record, reading.settings);
       sample.restarted = std::exchange(reading.is_gone, false);
+      reading.look_for_load();
       return Next::kSample;
     }
   } while (Clock::now() < deadline);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,13 @@
 #include "machine_io/position_source.h"
 
 namespace kerf {
+
+/// Which pin is the spindle's load, and what its number is of it: value * scale + offset.
+struct HalLoad {
+  std::string pin;
+  LoadUnit unit = LoadUnit::kPercentOfPower;
+  double scale = 1, offset = 0;
+};
 
 /// No map is needed: the pins have the same names in every LinuxCNC (README.md lists them).
 struct HalSettings {
@@ -25,6 +33,7 @@ struct HalSettings {
   double mm_per_unit = 1.0;
   /// Bit i: joint i counts degrees, so mm_per_unit is not for it.
   std::uint16_t rotary_joints = 0;
+  std::optional<HalLoad> load;
 };
 
 /// All faults, one text each: "source.rate_hz: 0 found, 1 to 1000 allowed (readings per second)".

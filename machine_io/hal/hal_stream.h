@@ -19,7 +19,7 @@ namespace kerf {
 static_assert(std::endian::native == std::endian::little);
 
 /// Raised with every change of a record. Ends of different versions refuse each other.
-inline constexpr std::uint16_t kHalStreamVersion = 2;
+inline constexpr std::uint16_t kHalStreamVersion = 3;
 inline constexpr std::uint32_t kHalSampleMagic = 0x534C484B;  ///< "KHLS" in the stream
 inline constexpr std::uint32_t kHalStatusMagic = 0x504C484B;  ///< "KHLP" in the stream
 
@@ -57,6 +57,7 @@ struct HalSampleRecord {
   std::array<double, kHalAxes> tool_offset{};  ///< motion.tooloffset.x .. w
   double spindle_rpm = kHalAbsent;             ///< spindle.0.speed-out, signed
   double velocity = kHalAbsent;                ///< motion.current-vel, units/s
+  double load = kHalAbsent;                    ///< the pin of kerf-hal --load
   std::int32_t program_line = 0;               ///< motion.program-line, 0 = nothing moves
   std::int32_t tool_number = 0;                ///< iocontrol.0.tool-number, 0 = none
   std::uint32_t joint_count = 0;  ///< joints that LinuxCNC has (the first nine are read)
@@ -64,10 +65,10 @@ struct HalSampleRecord {
   std::uint32_t on = 0;           ///< HalBit
   std::uint32_t unused = 0;       ///< 0
 };
-static_assert(sizeof(HalSampleRecord) == 288 && std::is_trivially_copyable_v<HalSampleRecord>);
+static_assert(sizeof(HalSampleRecord) == 296 && std::is_trivially_copyable_v<HalSampleRecord>);
 static_assert(offsetof(HalSampleRecord, joint) == 32);
 static_assert(offsetof(HalSampleRecord, spindle_rpm) == 248);
-static_assert(offsetof(HalSampleRecord, program_line) == 264);
+static_assert(offsetof(HalSampleRecord, program_line) == 272);
 
 /// kerf.collision-seconds while no collision is in sight: a plain large number, because a NaN or
 /// an infinity spreads through HAL components that calculate with it.

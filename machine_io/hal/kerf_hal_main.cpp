@@ -33,12 +33,13 @@ constexpr double kHighestRate_hz = 1000.0;
 constexpr std::int64_t kServoPatience_ns = 2'000'000'000;
 
 constexpr const char* kHelp =
-    "usage: kerf-hal [--rate HZ] >PIPE\n"
+    "usage: kerf-hal [--rate HZ] [--load PIN] >PIPE\n"
     "Reads positions, tool, program line and spindle of the LinuxCNC that runs on this computer\n"
     "and writes them to stdout as binary records; `kerf shadow` starts it. It links no pin and\n"
     "changes nothing in HAL but its own pins kerf.*, which show what comes in by stdin.\n"
-    "  --rate HZ  readings per second, 1 to 1000 (100)\n"
-    "  --help     this text\n"
+    "  --rate HZ   readings per second, 1 to 1000 (100)\n"
+    "  --load PIN  float, s32 or u32: the spindle's load, handed on as it is\n"
+    "  --help      this text\n"
     "Exit status: 0 asked to end (SIGTERM, SIGINT, stdout closed), 1 HAL refused, 2 wrong\n"
     "arguments, 4 no LinuxCNC runs or it has ended.\n";
 
@@ -212,7 +213,7 @@ int serve(HalPins& pins, const Descriptors& fds) {
   }
 }
 
-int run(double rate_hz) {
+int run(double rate_hz, const std::string& load_pin) {
   if (isatty(STDOUT_FILENO) != 0) {
     complain(HalMessage::kTerminal);
     return kHalExitUsage;
@@ -231,7 +232,7 @@ int run(double rate_hz) {
       return kHalExitTrouble;
   }
   std::string trouble;
-  const std::unique_ptr<HalPins> pins = HalPins::attach(trouble);
+  const std::unique_ptr<HalPins> pins = HalPins::attach(load_pin, trouble);
   if (!pins) {
     complain(trouble);
     return kHalExitTrouble;
@@ -250,21 +251,28 @@ int run(double rate_hz) {
 
 int main(int argc, char** argv) {
   double rate_hz = kerf::kDefaultRate_hz;
+  std::string load_pin;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--help" || argument == "-h") {
       std::fputs(kerf::kHelp, stdout);
       return 0;
     }
-    if (argument != "--rate" || i + 1 == argc) {
-      const bool is_rate = argument == "--rate";
-      kerf::complain(is_rate ? kerf::HalMessage::kRateMissing : kerf::HalMessage::kUnknownArgument,
+    const bool is_rate = argument == "--rate", is_load = argument == "--load";
+    if ((!is_rate && !is_load) || i + 1 == argc) {
+      kerf::complain(is_rate   ? kerf::HalMessage::kRateMissing
+                     : is_load ? kerf::HalMessage::kLoadMissing
+                               : kerf::HalMessage::kUnknownArgument,
                      argument);
       return kerf::kHalExitUsage;
+    }
+    if (is_load) {
+      load_pin = argv[++i];
+      continue;
     }
     const std::optional<double> rate = kerf::rate_from(argv[++i]);
     if (!rate) return kerf::kHalExitUsage;
     rate_hz = *rate;
   }
-  return kerf::run(rate_hz);
+  return kerf::run(rate_hz, load_pin);
 }

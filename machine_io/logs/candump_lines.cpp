@@ -36,6 +36,7 @@ class CandumpFrames final : public LogLines {
     add(settings.can_map->spindle);
     add(settings.can_map->tool_offset_z);
     add(settings.can_map->trigger);
+    add(settings.can_map->load);
   }
 
   LineMeaning read(std::string_view text, LineRemark& remark) override {

@@ -126,6 +126,9 @@ std::optional<Meaning> read_name(std::string_view name) {
   if (name == "spindle" || name == "spindle_rpm") return Meaning{ColumnRole::kSpindle};
   if (name == "trigger") return Meaning{ColumnRole::kTrigger};
   if (name == "program") return Meaning{ColumnRole::kProgram};
+  for (std::size_t unit = 0; unit < kLoadUnits; ++unit) {
+    if (name == kLoadColumns[unit]) return Meaning{ColumnRole::kLoad, unit};
+  }
   if (const auto axis = axis_number(name)) {
     return Meaning{ColumnRole::kPosition, *axis, CoordinateKind::kAxes, 0};
   }
@@ -196,6 +199,14 @@ LogColumn column_of(const Named& named, const LogSettings& settings) {
   LogColumn column;
   column.role = named.meaning.role;
   column.index = static_cast<std::uint8_t>(named.meaning.index);
+  if (column.role == ColumnRole::kLoad) {
+    column.load_unit = static_cast<LoadUnit>(named.meaning.index);
+    column.index = 0;
+    if (settings.load && named.meaning.rank < 0) {
+      column.factor = settings.load->scale;
+      column.offset = settings.load->offset;
+    }
+  }
   if (named.unit != nullptr) {
     if (named.unit->quantity == Quantity::kTime) column.ns_per_unit = named.unit->ns;
     column.factor = named.unit->mm;
@@ -210,6 +221,7 @@ LogColumn column_of(const Named& named, const LogSettings& settings) {
 
 /// One thing that a column can be, positions apart by kind and index.
 bool is_same_thing(const Meaning& a, const Meaning& b) {
+  if (a.role == ColumnRole::kLoad && b.role == a.role) return true;
   return a.role == b.role && a.index == b.index && a.kind == b.kind;
 }
 
@@ -256,6 +268,19 @@ void check_units(const std::vector<ColumnName>& names, const AllNamed& named,
   }
 }
 
+/// The column that the user calls the load goes before those that are called so themselves.
+bool name_load(const std::vector<ColumnName>& names, const LogLoad& load, AllNamed& named) {
+  const std::string wanted = to_lower(trim(load.column, is_blank));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (to_lower(trim(names[i].text, is_blank)) != wanted) continue;
+    constexpr int kFirst = -1;
+    const auto unit = static_cast<std::size_t>(load.unit);
+    named[i] = Named{{ColumnRole::kLoad, unit, CoordinateKind::kAxes, kFirst}, nullptr, {}};
+    return true;
+  }
+  return false;
+}
+
 /// False: no part in a sample, of the other kind of positions, or another column has the same
 /// meaning and a better name. Two as good are a fault.
 bool is_taken(const std::vector<ColumnName>& names, const AllNamed& named, std::size_t i,
@@ -288,6 +313,13 @@ bool find_columns(const std::vector<ColumnName>& names, const LogSettings& setti
   }
   AllNamed named;
   for (const ColumnName& name : names) named.push_back(read_column_name(name.text));
+  if (settings.load && !name_load(names, *settings.load, named)) {
+    faults.push_back({0,
+                      trf("source.map.load.pin: no column is called '{}'; found: {}",
+                          settings.load->column, list_of(names)),
+                      ""});
+    return false;
+  }
   check_units(names, named, faults);
   if (std::none_of(named.begin(), named.end(), is_position)) {
     faults.push_back(
@@ -315,6 +347,7 @@ bool find_columns(const std::vector<ColumnName>& names, const LogSettings& setti
     if (role == ColumnRole::kPosition) {
       found.positions = static_cast<std::uint16_t>(found.positions | 1U << named[i]->meaning.index);
     }
+    if (role == ColumnRole::kLoad) found.load = found.columns.back().load_unit;
     found.has_time |= role == ColumnRole::kHostTime || role == ColumnRole::kDeviceTime;
   }
   return faults.empty();

@@ -23,14 +23,17 @@ enum class ColumnRole : std::uint8_t {
   kSpindle,
   kTrigger,
   kProgram,
+  kLoad,
 };
 
 /// One column, ready for reading its cells.
 struct LogColumn {
   ColumnRole role = ColumnRole::kIgnored;
-  std::uint8_t index = 0;                    ///< of a position
-  double factor = 1.0;                       ///< value in the cell times this: mm or degrees
-  std::int64_t ns_per_unit = 1'000'000'000;  ///< of a time
+  std::uint8_t index = 0;                          ///< of a position
+  double factor = 1.0;                             ///< value in the cell times this: mm or degrees
+  double offset = 0.0;                             ///< of a load, added then
+  std::int64_t ns_per_unit = 1'000'000'000;        ///< of a time
+  LoadUnit load_unit = LoadUnit::kPercentOfPower;  ///< of a load
 };
 
 struct ColumnName {
@@ -44,6 +47,7 @@ struct LogColumns {
   std::uint16_t positions = 0;
   std::optional<CoordinateKind> kind;
   bool has_time = false;
+  std::optional<LoadUnit> load;
   /// Names without a part in AxisSample, or that a better one has displaced.
   std::vector<std::string> ignored;
 };

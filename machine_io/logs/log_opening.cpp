@@ -195,6 +195,7 @@ class Opening {
     }
     log_.contents.positions = columns.positions;
     log_.contents.kind = columns.kind;
+    log_.contents.load = columns.load;
     note_ignored(columns, tr("columns"));
     return true;
   }
@@ -229,6 +230,10 @@ class Opening {
       }
       has_coordinates |= line_.starts_with("# coordinates: ");
     }
+    if (settings_.load) {
+      return fail(
+          0, tr("source.map.load is for CSV and halsampler; a recording has its load itself"), "");
+    }
     LogColumns columns;
     if (!read_header(LogSettings{}, ',', columns)) return false;
     if (!has_coordinates) return fail(0, tr("the head has no line '# coordinates: '"), "");
@@ -241,6 +246,7 @@ class Opening {
     }
     if (head.sums && !is_head_whole()) return false;
     head.axes = columns.positions;
+    head.load = columns.load;
     log_.contents.recording = std::move(head);
     log_.lines = make_recording_lines(std::move(columns));
     return true;
@@ -301,6 +307,7 @@ class Opening {
     }
     log_.contents.positions = columns.positions;
     log_.contents.kind = columns.kind;
+    log_.contents.load = columns.load;
     note_ignored(columns, tr("pins"));
     log_.lines = make_halsampler_lines(std::move(columns), words == pins + 1, settings_.period_s);
     keep_line();
@@ -328,6 +335,7 @@ class Opening {
       if (!settings_.can_map->axes[i]) continue;
       log_.contents.positions = static_cast<std::uint16_t>(log_.contents.positions | 1U << i);
     }
+    if (settings_.can_map->load) log_.contents.load = settings_.can_map->load_unit;
     log_.lines = make_candump_lines(settings_);
     keep_line();
     return true;

@@ -48,7 +48,8 @@ int compare_times(const AxisSample& a, const AxisSample& b) {
 bool is_same(const AxisSample& a, const AxisSample& b) {
   const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
   if (a.known != b.known || a.tool != b.tool || a.trigger != b.trigger || a.line != b.line ||
-      !same(a.tool_offset_z_mm, b.tool_offset_z_mm) || !same(a.spindle_rpm, b.spindle_rpm)) {
+      !same(a.tool_offset_z_mm, b.tool_offset_z_mm) || !same(a.spindle_rpm, b.spindle_rpm) ||
+      !same(a.load, b.load)) {
     return false;
   }
   for (std::size_t i = 0; i < kMaxPositions; ++i) {

@@ -28,6 +28,13 @@ enum class LogFormat : std::uint8_t {
 
 enum class LogUnit : std::uint8_t { kMm, kInch };
 
+/// The column that is the spindle's load, where its name does not say so: value * scale + offset.
+struct LogLoad {
+  std::string column;
+  LoadUnit unit = LoadUnit::kPercentOfPower;
+  double scale = 1, offset = 0;
+};
+
 struct LogSettings {
   std::string path;  ///< "-": standard input
   LogFormat format = LogFormat::kAuto;
@@ -44,6 +51,9 @@ struct LogSettings {
   LogUnit unit = LogUnit::kMm;
   /// Bit i: joint i counts degrees, so `unit` is not for it. The axes A, B and C never are lengths.
   std::uint16_t rotary_joints = 0;
+
+  /// csv, halsampler: a column, or a pin.
+  std::optional<LogLoad> load;
 
   /// candump: which bits of which frame are which position. Not looked at otherwise.
   std::optional<CanMap> can_map;
@@ -72,6 +82,7 @@ struct LogContents {
   std::uint16_t positions = 0;         ///< bit i: there is a column for position[i]
   /// Joints or axes by the names of the columns; empty where names do not tell (candump).
   std::optional<CoordinateKind> kind;
+  std::optional<LoadUnit> load;  ///< there is a column for it
   /// The head of a recording; nothing in other formats.
   std::optional<RecordingHead> recording;
 };
@@ -81,9 +92,10 @@ struct LogContents {
 /// CSV: a header row, then cells between ',', ';' or tabs, which may be quoted as in RFC 4180 (but
 /// not hold line ends); `#` begins a comment; LF or CRLF. Columns, in any order and case: t (time,
 /// timestamp, t_device, t_host; one is needed), x .. w or j0 .. j8 (joint0, or LinuxCNC's HAL pins;
-/// at least one), tool, line, tool_offset_z (tloz), spindle_rpm (rpm), trigger, program. A unit may
-/// be in the name: x_mm, "x [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes().
-/// Cells that are empty and '-' mean what they mean in a recording.
+/// at least one), tool, line, tool_offset_z (tloz), spindle_rpm (rpm), trigger, program,
+/// load_percent, load_percent_torque, load_kw, load_nm, load_a. A unit may be in the name: x_mm, "x
+/// [in]", x(mm), t_ms, t_ns. Others are ignored and listed in notes(). Cells that are empty and '-'
+/// mean what they mean in a recording.
 ///
 /// Times: a recording has both its times back as recorded, to the ns (but see below). Of other logs
 /// device_ns is the log's stamp (seconds of whatever clock it has; halsampler: sample number times

@@ -66,6 +66,9 @@ bool read_unknown(const LogColumn& column, AxisSample& sample) {
     case ColumnRole::kProgram:
       sample.program = ProgramState::kUnknown;
       return true;
+    case ColumnRole::kLoad:
+      sample.load = std::numeric_limits<double>::quiet_NaN();
+      return true;
     default:
       return column.role == ColumnRole::kIgnored;
   }
@@ -358,6 +361,11 @@ bool read_cell(std::string_view text, const LogColumn& column, AxisSample& sampl
       return read_count(text, sample.trigger);
     case ColumnRole::kProgram:
       return parse_program_state(text, sample.program);
+    case ColumnRole::kLoad:
+      sample.load_unit = column.load_unit;
+      if (!read_finite(text, column.factor, sample.load)) return false;
+      sample.load += column.offset;
+      return std::abs(sample.load) <= kMostLoad;
   }
   return false;
 }

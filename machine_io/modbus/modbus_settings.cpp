@@ -102,13 +102,10 @@ std::vector<std::string> validate(const ModbusSettings& settings) {
   if (!any)
     faults.texts.emplace_back(tr("map: no axis is given; at least one of X to W is needed"));
   const std::pair<std::string_view, const std::optional<ModbusRegister>&> others[] = {
-      {"tool", settings.tool},
-      {"line", settings.line},
-      {"spindle", settings.spindle},
-      {"tool_offset_z", settings.tool_offset_z},
-      {"trigger", settings.trigger},
-      {"counter", settings.counter},
-      {"counter_begun", settings.counter_begun}};
+      {"tool", settings.tool},       {"line", settings.line},
+      {"spindle", settings.spindle}, {"tool_offset_z", settings.tool_offset_z},
+      {"trigger", settings.trigger}, {"load", settings.load},
+      {"counter", settings.counter}, {"counter_begun", settings.counter_begun}};
   for (const auto& [key, wanted] : others) {
     if (wanted) check_register(faults, key, *wanted);
   }

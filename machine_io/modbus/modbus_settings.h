@@ -72,6 +72,8 @@ struct ModbusSettings {
   std::optional<ModbusRegister> spindle;        ///< rpm, signed
   std::optional<ModbusRegister> tool_offset_z;  ///< mm
   std::optional<ModbusRegister> trigger;        ///< of a punch: 0 off, else on
+  std::optional<ModbusRegister> load;           ///< of the spindle, in load_unit
+  LoadUnit load_unit = LoadUnit::kPercentOfPower;
   /// An integer that the device changes at its every cycle. A reading in which it has not changed
   /// is not handed out: that tells a dead program behind a living server from a machine that
   /// stands.

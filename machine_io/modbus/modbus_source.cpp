@@ -49,11 +49,12 @@ enum class Extra : std::uint8_t {
   kSpindle,
   kToolOffset,
   kTrigger,
+  kLoad,
   kCounterBegun,
   kCounter
 };
-constexpr std::string_view kExtraKeys[] = {"tool",    "line",          "spindle", "tool_offset_z",
-                                           "trigger", "counter_begun", "counter"};
+constexpr std::string_view kExtraKeys[] = {"tool",    "line", "spindle",       "tool_offset_z",
+                                           "trigger", "load", "counter_begun", "counter"};
 /// Answers of two cycles in a row that are asked for again. A cycle takes the device microseconds.
 constexpr int kMostTornAnswers = 10;
 
@@ -71,6 +72,8 @@ bool is_plausible(Extra what, double value) {
       return std::abs(value) <= kMaxRpm;
     case Extra::kToolOffset:
       return std::abs(value) <= kMaxToolOffset_mm;
+    case Extra::kLoad:
+      return std::abs(value) <= kMostLoad;
     case Extra::kCounterBegun:
     case Extra::kCounter:
       break;
@@ -86,6 +89,8 @@ std::string_view allowed(Extra what) {
       return tr("a whole number, 0 or more");
     case Extra::kSpindle:
       return tr("-1e6 to 1e6 rpm");
+    case Extra::kLoad:
+      return "-1e5 to 1e5";
     default:
       return tr("-1e4 to 1e4 mm");
   }
@@ -150,9 +155,13 @@ ModbusSource::Poller::Poller(ModbusSettings given)
     wanted_.push_back(*settings_.axes[i]);
   }
   const std::pair<Extra, const std::optional<ModbusRegister>&> extras[] = {
-      {Extra::kTool, settings_.tool},       {Extra::kLine, settings_.line},
-      {Extra::kSpindle, settings_.spindle}, {Extra::kToolOffset, settings_.tool_offset_z},
-      {Extra::kTrigger, settings_.trigger}, {Extra::kCounterBegun, settings_.counter_begun},
+      {Extra::kTool, settings_.tool},
+      {Extra::kLine, settings_.line},
+      {Extra::kSpindle, settings_.spindle},
+      {Extra::kToolOffset, settings_.tool_offset_z},
+      {Extra::kTrigger, settings_.trigger},
+      {Extra::kLoad, settings_.load},
+      {Extra::kCounterBegun, settings_.counter_begun},
       {Extra::kCounter, settings_.counter}};
   for (const auto& [what, wanted] : extras) {
     if (!wanted) continue;
@@ -296,6 +305,10 @@ bool ModbusSource::Poller::fill_extra(AxisSample& sample, Extra what, double val
       break;
     case Extra::kTrigger:
       sample.trigger = static_cast<std::int32_t>(std::lround(value));
+      break;
+    case Extra::kLoad:
+      sample.load = value;
+      sample.load_unit = settings_.load_unit;
       break;
     case Extra::kCounterBegun:
     case Extra::kCounter:

@@ -89,6 +89,8 @@ std::size_t CanEncoder::encode(const ServedState& served, double since_last_s,
   const double rpm = std::clamp(std::round(state.spindle_rpm), -32768.0, 32767.0);
   put(spindle, static_cast<std::uint16_t>(static_cast<std::int16_t>(rpm)));
   put(spindle, static_cast<std::uint32_t>(thousandths(state.tool_offset_z_mm)));
+  const double load = std::clamp(std::round(100 * state.load), -32768.0, 32767.0);
+  put(spindle, static_cast<std::uint16_t>(static_cast<std::int16_t>(load)));
   frames[count++] = spindle;
   if (!served.faults.has(FaultKind::kGarbage)) return count;
   for (std::size_t i = 0; i < count; ++i) {

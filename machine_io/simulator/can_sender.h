@@ -24,7 +24,7 @@ inline constexpr double kOdriveTurn_mm = 5;
 inline constexpr double kOdriveTurn_deg = 360;
 
 /// Sent with either layout, little endian. kCanStatusId: u16 tool, u32 program line, u16 scan
-/// counter; kCanSpindleId: i16 rpm, i32 tool offset Z in 0.001 mm.
+/// counter; kCanSpindleId: i16 rpm, i32 tool offset Z in 0.001 mm, i16 spindle load in 0.01.
 inline constexpr std::uint32_t kCanStatusId = 0x6f0;
 inline constexpr std::uint32_t kCanSpindleId = 0x6f1;
 

@@ -39,10 +39,12 @@ const char* const kRegisterHelp = tr_noop(
     "   15              scan counter   uint16        one up with each update\n"
     "   16              spindle speed  int16         rpm, negative = counterclockwise\n"
     "   17              tool offset Z  int32   CDAB  0.001 mm\n"
+    "   19              spindle load   int16         0.01, of --load\n"
     "  100, 102 .. 110  X Y Z A B C    float32 ABCD  mm, degrees\n"
     "  112              tool offset Z  float32 ABCD  mm\n"
     "  114              spindle speed  float32 ABCD  rpm\n"
-    "19 to 99 read as 0, above 115: exception 2. Whatever would write: exception 1.\n");
+    "  116              spindle load   float32 ABCD  of --load\n"
+    "20 to 99 read as 0, above 117: exception 2. Whatever would write: exception 1.\n");
 
 std::int32_t thousandths(double value) {
   if (std::isnan(value)) return std::numeric_limits<std::int32_t>::min();
@@ -67,6 +69,10 @@ void encode_registers(const ServedState& served, Registers& registers) {
            &registers[kToolOffsetRegister]);
   put_float_abcd(state.tool_offset_z_mm, &registers[kFloatToolOffsetRegister]);
   put_float_abcd(state.spindle_rpm, &registers[kFloatSpindleRegister]);
+  constexpr double kLoadSteps = 100;
+  registers[kLoadRegister] =
+      static_cast<std::uint16_t>(held<std::int16_t>(kLoadSteps * state.load));
+  put_float_abcd(state.load, &registers[kFloatLoadRegister]);
 }
 
 }  // namespace kerf

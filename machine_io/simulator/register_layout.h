@@ -10,7 +10,7 @@
 
 namespace kerf {
 
-/// Registers 0 to 115, the same by function 3 (holding) and 4 (input). Of two registers, "CDAB" is
+/// Registers 0 to 117, the same by function 3 (holding) and 4 (input). Of two registers, "CDAB" is
 /// the low word first, "ABCD" the high word first; each word goes out high byte first, as the
 /// protocol has it.
 ///
@@ -20,20 +20,24 @@ namespace kerf {
 ///      15            scan counter       uint16         one up with each update
 ///      16            spindle speed      int16          rpm, negative = counterclockwise
 ///      17            tool offset Z      int32  CDAB    0.001 mm
+///      19            spindle load       int16          0.01, of --load
 ///     100, 102 ..110 X Y Z A B C        float32 ABCD   mm, degrees
 ///     112            tool offset Z      float32 ABCD   mm
 ///     114            spindle speed      float32 ABCD   rpm
+///     116            spindle load       float32 ABCD   of --load
 ///
-/// 19 to 99 read as 0. Any other address: exception 2. Functions other than 3 and 4: exception 1.
-inline constexpr std::size_t kRegisterCount = 116;
+/// 20 to 99 read as 0. Any other address: exception 2. Functions other than 3 and 4: exception 1.
+inline constexpr std::size_t kRegisterCount = 118;
 inline constexpr std::size_t kToolRegister = 12;
 inline constexpr std::size_t kLineRegister = 13;
 inline constexpr std::size_t kScanRegister = 15;
 inline constexpr std::size_t kSpindleRegister = 16;
 inline constexpr std::size_t kToolOffsetRegister = 17;
+inline constexpr std::size_t kLoadRegister = 19;
 inline constexpr std::size_t kFloatRegister = 100;
 inline constexpr std::size_t kFloatToolOffsetRegister = 112;
 inline constexpr std::size_t kFloatSpindleRegister = 114;
+inline constexpr std::size_t kFloatLoadRegister = 116;
 
 using Registers = std::array<std::uint16_t, kRegisterCount>;
 

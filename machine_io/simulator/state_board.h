@@ -19,6 +19,7 @@ struct SimulatedState {
   int tool = 0;            ///< in the spindle, 0 = none
   double spindle_rpm = 0;  ///< negative: counterclockwise
   double tool_offset_z_mm = 0;
+  double load = 0;         ///< of the spindle, as kerf machine --load has it
   std::uint16_t scan = 0;  ///< counts the updates, 65535 is followed by 0: tells a dead source
 };
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/catalogue_file.h"
 #include "tests/base/temporary_folder.h"
 
 namespace kerf {
@@ -62,6 +63,20 @@ TEST_F(Translate, GermanComesFromItsCatalogue) {
   EXPECT_STREQ(tr("traverse touches the workpiece"), "traverse touches the workpiece");
 }
 
+TEST_F(Translate, WhatALanguageDoesNotHaveYetIsEnglish) {
+  ASSERT_TRUE(use_language("fr"));
+  EXPECT_STREQ(tr("traverse touches the workpiece"), "un déplacement rapide touche la pièce");
+  EXPECT_STREQ(tr("nobody has ever written this"), "nobody has ever written this");
+  ASSERT_TRUE(use_language("zh_CN"));
+  EXPECT_STREQ(tr("traverse touches the workpiece"), "快速移动碰到工件");
+}
+
+TEST_F(Translate, ACatalogueLiesWhereItsTextsComeFrom) {
+  EXPECT_EQ(catalogue_file("fr"), std::string(KERF_LOCALES) + "/fr/LC_MESSAGES/kerf.mo");
+  EXPECT_TRUE(std::filesystem::exists(catalogue_file("fr")));
+  EXPECT_EQ(catalogue_file("en"), "");
+}
+
 TEST_F(Translate, ALanguageThatIsNotThereChangesNothing) {
   ASSERT_TRUE(use_language("de"));
   EXPECT_FALSE(use_language("tlh"));
@@ -70,8 +85,11 @@ TEST_F(Translate, ALanguageThatIsNotThereChangesNothing) {
 }
 
 TEST_F(Translate, LanguagesAreThoseOfTheFolder) {
-  EXPECT_EQ(languages(), (std::vector<std::string>{"en", "de"}));
+  EXPECT_EQ(languages(), (std::vector<std::string>{"en", "de", "es", "fr", "zh_CN"}));
   EXPECT_EQ(name_of_language("de"), "Deutsch");
+  EXPECT_EQ(name_of_language("es"), "Español");
+  EXPECT_EQ(name_of_language("fr"), "Français");
+  EXPECT_EQ(name_of_language("zh_CN"), "中文");
   EXPECT_EQ(name_of_language("en"), "English");
   EXPECT_STREQ(tr("Play"), "Play") << "asking for a name changes nothing";
   setenv("TEXTDOMAINDIR", "/nonexistent", 1);
@@ -82,14 +100,19 @@ TEST_F(Translate, TheEnvironmentAsksInItsOrder) {
   EXPECT_EQ(language_of_environment(), "en");
   setenv("LANG", "de_AT.UTF-8", 1);
   EXPECT_EQ(language_of_environment(), "de");
-  setenv("LC_MESSAGES", "fr_FR.UTF-8", 1);
-  EXPECT_EQ(language_of_environment(), "en") << "there is no French";
+  setenv("LC_MESSAGES", "fi_FI.UTF-8", 1);
+  EXPECT_EQ(language_of_environment(), "en") << "there is no Finnish";
   setenv("LC_ALL", "de", 1);
   EXPECT_EQ(language_of_environment(), "de");
-  setenv("LANGUAGE", "fr:en_GB:de", 1);
+  setenv("LANGUAGE", "fi:en_GB:de", 1);
   EXPECT_EQ(language_of_environment(), "en");
-  setenv("LANGUAGE", "fr:de", 1);
+  setenv("LANGUAGE", "fi:de", 1);
   EXPECT_EQ(language_of_environment(), "de");
+  unsetenv("LANGUAGE");
+  setenv("LC_ALL", "zh_CN.UTF-8", 1);
+  EXPECT_EQ(language_of_environment(), "zh_CN");
+  setenv("LC_ALL", "zh_TW.UTF-8", 1);
+  EXPECT_EQ(language_of_environment(), "en") << "other letters";
   for (const char* plain : {"C", "POSIX", "C.UTF-8"}) {
     setenv("LC_ALL", plain, 1);
     EXPECT_EQ(language_of_environment(), "en") << plain;

@@ -1,5 +1,6 @@
 // Arbitrary bytes as an NC program whose feeds are to be changed: what is not a feed stays byte for
-// byte, and a feed that was written is read again.
+// byte, and a feed that was written is read again; and what is written out has nothing left to be
+// written out.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "twin/optimize/nc_text.h"
+#include "twin/optimize/unroll.h"
 
 namespace {
 
@@ -22,6 +24,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const bool inch : {false, true}) {
     const kerf::NcText program(text, inch);
     check(program.with({}) == text);
+    if (const auto unrolled = kerf::unroll(program, 300)) {
+      const kerf::NcText written(unrolled->text, inch);
+      check(written.lines().size() == unrolled->line_before.size());
+      const auto again = kerf::unroll(written, 1000);
+      check(again && again->text == unrolled->text && again->passes == 0 && again->calls == 0);
+    }
     std::map<std::uint32_t, kerf::NcEdit> edits;
     std::uint32_t number = 0;
     for (const kerf::NcLine& line : program.lines()) {

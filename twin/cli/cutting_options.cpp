@@ -46,6 +46,21 @@ bool has_tool_limits(const SessionOptions& session) {
   return false;
 }
 
+CuttingWish understand_spindle_load(OptionReader& reader) {
+  CuttingWish wish;
+  const std::string text = reader.text("--material");
+  if (!text.empty()) wish.material = read_material(text, reader);
+  wish.spindle_power_kw = reader.number("--spindle-power");
+  wish.spindle_torque_nm = reader.number("--spindle-torque");
+  wish.spindle_current_a = reader.number("--spindle-current");
+  if (!text.empty()) return wish;
+  for (const char* option : {"--spindle-power", "--spindle-torque", "--spindle-current"}) {
+    if (reader.choose(option).from == ValueFrom::kCommandLine)
+      reader.fault(option, tr("is held against forces: --material says of what"));
+  }
+  return wish;
+}
+
 CuttingWish understand_cutting(OptionReader& reader) {
   CuttingWish wish;
   const std::string text = reader.text("--material");

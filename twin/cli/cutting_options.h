@@ -11,6 +11,9 @@ namespace kerf {
 /// limits of forces without a material.
 CuttingWish understand_cutting(OptionReader& reader);
 
+/// Of a machine that is watched: the material, and what its spindle is rated for.
+CuttingWish understand_spindle_load(OptionReader& reader);
+
 /// Some tool says what its maker allows, which its engagement is held against.
 bool has_tool_limits(const SessionOptions& session);
 

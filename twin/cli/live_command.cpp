@@ -61,6 +61,7 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
   } else if (const auto* can = std::get_if<CanSourceOptions>(&request.config.source)) {
     head.trigger = can->map.trigger.has_value();
   }
+  head.load = load_unit_of(request.config, source);
   head.program = std::holds_alternative<HalSettings>(request.config.source);
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
@@ -218,6 +219,7 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
         fault(fmt::format("--events: {}: {}", request.events, std::strerror(events.error))));
   }
   choose_frame(request, *source, diagnostics);
+  if (!check_load(request, *source, diagnostics)) outcome = Outcome::kUsageError;
   const std::shared_ptr<const DesignFile> design = open_design(request.compare, diagnostics);
   std::unique_ptr<LiveSession> session;
   if (!has_error(diagnostics)) {

@@ -59,6 +59,7 @@ std::string status_line(const LiveStatus& status) {
   if (place.followed && status.remaining_s >= 0) {
     out += trf("  {} left", time_text(status.remaining_s));
   }
+  if (status.load) out += trf("  load {}", text_of(*status.load));
   if (status.collision_in_s >= 0) {
     out += trf("  COLLISION in {:.1f} s, line {}", status.collision_in_s, status.collision_line);
   }

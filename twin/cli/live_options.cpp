@@ -13,6 +13,7 @@
 #include "interp_bridge/ini_file.h"
 #include "interp_bridge/parameter_file.h"
 #include "machine_io/hal/loaded_file.h"
+#include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
 #include "twin/cli/run_options.h"
 #include "twin/config/make_source.h"
@@ -282,6 +283,7 @@ LiveRequest understand_live(const Arguments& a, Diagnostics& diagnostics) {
   options.lost_after_s = request.config.common.lost_after_s;
   understand_cutting(program, work, reader, request);
   if (options.turret) refuse_planned(work, reader, options);
+  options.cutting.checks.cutting = understand_spindle_load(reader);
   take_work(std::move(work), options);
   understand_outlets(reader, request);
   adapt_source(request, request.config.source);
@@ -295,6 +297,39 @@ LiveRequest understand_live(const Arguments& a, Diagnostics& diagnostics) {
   }
   check_output_arguments(request.outputs, diagnostics);
   return request;
+}
+
+/// What is wanted of the spindle's load, and what the source tells of it.
+bool check_load(const LiveRequest& request, const PositionSource& source,
+                Diagnostics& diagnostics) {
+  const CuttingWish& wish = request.options.cutting.checks.cutting;
+  if (!wish.material) return true;
+  const std::optional<LoadUnit> unit = load_unit_of(request.config, source);
+  Diagnostic d;
+  if (!unit) {
+    d.severity = Severity::kWarning;
+    d.message = trf("--material {}: {} tells no load of the spindle to be held against it",
+                    wish.material->name, source.describe());
+    d.hint = tr("source.map.load says where it is (docs/beside-a-machine.md)");
+    diagnostics.push_back(std::move(d));
+    return true;
+  }
+  const bool by_power = *unit == LoadUnit::kPercentOfPower;
+  const bool by_torque = *unit == LoadUnit::kPercentOfTorque || *unit == LoadUnit::kAmperes;
+  const char* missing = nullptr;
+  if (by_power && wish.spindle_power_kw <= 0) missing = "--spindle-power";
+  if (*unit == LoadUnit::kAmperes && wish.spindle_current_a <= 0) missing = "--spindle-current";
+  if (by_torque && wish.spindle_torque_nm <= 0) missing = "--spindle-torque";
+  if (missing == nullptr) return true;
+  d.message =
+      trf("the spindle's load comes in {}, and what it is rated for is not known: {} is "
+          "needed beside --material",
+          word_of(*unit), missing);
+  d.hint =
+      tr("its nameplate has power and current; torque in Nm is 9549 * kW / rpm of the "
+         "nameplate");
+  diagnostics.push_back(std::move(d));
+  return false;
 }
 
 void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics) {

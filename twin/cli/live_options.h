@@ -50,6 +50,9 @@ struct LiveRequest {
 /// All faults at once, as diagnostics. `arguments`: of kShadow or kReplay.
 LiveRequest understand_live(const Arguments& arguments, Diagnostics& diagnostics);
 
+/// A load that cannot be held against the material: an error, and false. None at all: a warning.
+bool check_load(const LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);
+
 /// How the samples of `source` are to be read: completes request.options.cutting.
 void choose_frame(LiveRequest& request, const PositionSource& source, Diagnostics& diagnostics);
 

@@ -26,6 +26,7 @@
 #include "twin/optimize/block_split.h"
 #include "twin/optimize/feed_placer.h"
 #include "twin/optimize/optimize_report.h"
+#include "twin/optimize/unroll.h"
 
 namespace kerf {
 namespace {
@@ -46,6 +47,16 @@ void ask_for(OptionReader& reader, std::string_view option, std::optional<double
   if (number > 0) value = number;
 }
 
+/// The machine's own spindle limits what nobody has limited more.
+void take_spindle(const CuttingWish& wish, double max_rpm, FeedAims& aims) {
+  aims.spindle_max_rpm = max_rpm;
+  if (!wish.material) return;
+  aims.spindle_torque_nm = wish.spindle_torque_nm;
+  std::optional<double>& power = aims.most[CutLimit::kPower];
+  if (wish.spindle_power_kw > 0)
+    power = std::min(power.value_or(wish.spindle_power_kw), wish.spindle_power_kw);
+}
+
 void understand_aims(OptionReader& reader, FeedAims& aims) {
   ask_for(reader, "--chip", aims.most[CutLimit::kChip]);
   ask_for(reader, "--max-rate", aims.most[CutLimit::kRate]);
@@ -53,6 +64,7 @@ void understand_aims(OptionReader& reader, FeedAims& aims) {
   ask_for(reader, "--max-power", aims.most[CutLimit::kPower]);
   const CuttingWish wish = understand_cutting(reader);
   aims.material = wish.material;
+  take_spindle(wish, reader.number("--spindle-max"), aims);
   if (wish.most_bend_mm > 0) aims.most[CutLimit::kDeflection] = wish.most_bend_mm;
   for (const char* option : {"--max-force", "--max-power"}) {
     if (!reader.text(option).empty() && reader.text("--material").empty())
@@ -61,6 +73,7 @@ void understand_aims(OptionReader& reader, FeedAims& aims) {
   ask_for(reader, "--max-feed", aims.most_feed_mm_per_min);
   ask_for(reader, "--air-feed", aims.air_feed_mm_per_min);
   aims.splits = reader.is_yes("--split");
+  aims.unrolls = reader.is_yes("--unroll");
   if (aims.limits_cutting() || aims.most_feed_mm_per_min || aims.air_feed_mm_per_min) return;
   if (has_error(reader.diagnostics())) return;  // one of them may be among the faults
   reader.fault("--chip", tr("nothing says how fast it may be"),
@@ -248,15 +261,15 @@ class Optimizer {
     if (!trace) return fail(trace.error());
     report.before = report.after = optimized_run(before, survey);
     report.digest = before.report().stock->digest;
-    if (!request_.aims.splits)
-      return optimize({*text, *trace, survey}, false, report) && commit(*text);
-    const SplitText split = split_blocks(*text, survey.motions(), survey.parts(), request_.aims);
-    if (split.blocks == 0) return optimize({*text, *trace, survey}, false, report) && commit(*text);
-    const NcText divided(split.text, is_inch());
+    if (!request_.aims.unrolls)
+      return shape(before, {*text, *trace, survey}, false, report) && commit(*text);
+    Result<UnrolledText> unrolled = unroll(*text);
+    if (!unrolled) return fail(unrolled.error(), tr("without --unroll loops stay as they are"));
     FeedTrace ways;
     FeedSurvey looks(request_.aims);
-    if (!divide(before, *trace, split, ways, looks, report)) return false;
-    return optimize({divided, ways, looks}, true, report) && commit(*text);
+    if (!write_out(*trace, *unrolled, ways, looks, report)) return false;
+    const NcText written(unrolled->text, is_inch());
+    return shape(before, {written, ways, looks}, true, report) && commit(*text);
   }
 
   const std::string& copy() const { return copy_; }
@@ -285,6 +298,49 @@ class Optimizer {
     const FeedTrace& trace;
     const FeedSurvey& survey;
   };
+
+  /// Blocks are divided, if that is wanted, and get their feeds. `is_other`: the text is not that
+  /// of PROGRAM any more.
+  bool shape(const CutRun& before, const Subject& subject, bool is_other, OptimizeReport& report) {
+    if (!request_.aims.splits) return optimize(subject, is_other, report);
+    const SplitText split =
+        split_blocks(subject.text, subject.survey.motions(), subject.survey.parts(), request_.aims);
+    if (split.blocks == 0) return optimize(subject, is_other, report);
+    const NcText divided(split.text, is_inch());
+    FeedTrace ways;
+    FeedSurvey looks(request_.aims);
+    if (!divide(before, subject.trace, split, ways, looks, report)) return false;
+    return optimize({divided, ways, looks}, true, report);
+  }
+
+  /// Written out it is the same program, bit for bit.
+  bool write_out(const FeedTrace& trace, const UnrolledText& unrolled, FeedTrace& ways,
+                 FeedSurvey& survey, OptimizeReport& report) {
+    Result<FeedTrace> after = attempt(unrolled.text);
+    if (!after) return fail(after.error());
+    const std::string hint = tr("without --unroll loops stay as they are");
+    const std::size_t both = std::min(trace.motions.size(), after->motions.size());
+    for (std::size_t i = 0; i < both; ++i) {
+      const TracedMotion &was = trace.motions[i], &is = after->motions[i];
+      if (was.print != is.print || was.feed_mm_per_min != is.feed_mm_per_min)
+        return fail(trf("--unroll: written out, line {} makes another motion", was.source.line),
+                    hint);
+    }
+    if (trace.motions.size() != after->motions.size())
+      return fail(trf("--unroll: written out, the program makes {} motions, not {}",
+                      after->motions.size(), trace.motions.size()),
+                  hint);
+    const CutRun cut = cut_again(survey);
+    if (cut.code != kExitGood)
+      return fail(trf("{} cannot be cut again: nothing is written", request_.out));
+    if (cut.report().stock->digest != report.digest)
+      return fail(tr("--unroll: written out, it leaves another workpiece"));
+    ways = std::move(*after);
+    report.unrolled_passes = unrolled.passes;
+    report.unrolled_calls = unrolled.calls;
+    report.unrolled_lines = unrolled.line_before;
+    return true;
+  }
 
   /// Blocks in pieces go the same way, and leave the same part; how the tool is engaged on them is
   /// looked at anew.

@@ -278,6 +278,11 @@ void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& 
     if (item.name == "spindle") map.spindle = signal;
     if (item.name == "tool_offset_z") map.tool_offset_z = signal;
     if (item.name == "trigger") map.trigger = signal;
+    if (item.name == "load") {
+      map.load = signal;
+      map.load_unit = read_load_unit(item.group);
+      refuse_beside(item.group, tr("id or signal"), {"pin"});
+    }
   }
   shelf.finish(all_found);
 }

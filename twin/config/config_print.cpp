@@ -162,6 +162,7 @@ void print_machine(Printer& printer, const ConfigMachine& machine) {
   if (machine.spindle_max_rpm) printer.put("spindle_max_rpm", *machine.spindle_max_rpm);
   if (machine.spindle_power_kw) printer.put("spindle_power_kw", *machine.spindle_power_kw);
   if (machine.spindle_torque_nm) printer.put("spindle_torque_nm", *machine.spindle_torque_nm);
+  if (machine.spindle_current_a) printer.put("spindle_current_a", *machine.spindle_current_a);
   if (machine.drawn.links) print_links(printer, *machine.drawn.links);
   printer.put("collisions", machine.collisions ? "yes" : "no");
   if (!machine.ignore.empty()) {
@@ -307,6 +308,10 @@ void print_can_map(Printer& printer, const CanMap& map, CoordinateKind kind) {
   other("spindle", map.spindle);
   other("tool_offset_z", map.tool_offset_z);
   other("trigger", map.trigger);
+  if (map.load) {
+    printer.line(
+        fmt::format("load: {{{}, unit: {}}}", signal_text(*map.load), word_of(map.load_unit)));
+  }
   printer.close();
 }
 
@@ -351,6 +356,10 @@ struct SourcePrinter {
     other("spindle", s.spindle);
     other("tool_offset_z", s.tool_offset_z);
     other("trigger", s.trigger);
+    if (s.load) {
+      printer.line(
+          fmt::format("load: {{{}, unit: {}}}", register_text(*s.load), word_of(s.load_unit)));
+    }
     other("counter", s.counter);
     other("counter_begun", s.counter_begun);
     printer.close();
@@ -365,6 +374,17 @@ struct SourcePrinter {
   void operator()(const HalSettings& settings) const {
     printer.put("rate_hz", settings.rate_hz);
     if (!settings.kerf_hal_path.empty()) printer.text("kerf_hal_path", settings.kerf_hal_path);
+    if (settings.load) {
+      print_load_pin(settings.load->pin, settings.load->unit, settings.load->scale,
+                     settings.load->offset);
+    }
+  }
+
+  void print_load_pin(const std::string& pin, LoadUnit unit, double scale, double offset) const {
+    printer.open("map");
+    printer.line(fmt::format("load: {{pin: {}, unit: {}, scale: {}, offset: {}}}", quoted(pin),
+                             word_of(unit), scale, offset));
+    printer.close();
   }
 
   void operator()(const LogSettings& settings) const {
@@ -381,6 +401,10 @@ struct SourcePrinter {
     if (settings.format == LogFormat::kHalsampler) printer.put("period_s", settings.period_s);
     if (!settings.can_interface.empty()) printer.text("interface", settings.can_interface);
     if (settings.can_map) print_can_map(printer, *settings.can_map, kind);
+    if (settings.load) {
+      print_load_pin(settings.load->column, settings.load->unit, settings.load->scale,
+                     settings.load->offset);
+    }
   }
 };
 

@@ -114,6 +114,7 @@ void read_machine(const GroupReader& machine, ConfigMachine& out) {
   machine.number("spindle_max_rpm", out.spindle_max_rpm);
   machine.number("spindle_power_kw", out.spindle_power_kw);
   machine.number("spindle_torque_nm", out.spindle_torque_nm);
+  machine.number("spindle_current_a", out.spindle_current_a);
   read_kinematics(machine, out);
 }
 
@@ -381,6 +382,14 @@ void read_workshop(const GroupReader& root, LiveConfig& config) {
   read_beam(root.group("beam"), config.beam);
   read_turret_key(root, config);
   config.material = root.text("material");
+  if (ConfigNode* const node = root.find("material")) {
+    // FILE:NAME, beside the configuration.
+    const std::size_t colon = node->scalar.rfind(':');
+    if (colon != node->scalar.npos && colon > 0) {
+      config.material = resolved_path(*node, node->scalar.substr(0, colon), root.faults()) +
+                        node->scalar.substr(colon);
+    }
+  }
   read_follow(root.group("follow"), config.follow);
   const GroupReader view = root.group("view");
   view.number("window", config.view.window);

@@ -111,6 +111,9 @@ void report_faults(const std::vector<std::string>& texts, const GroupReader& sou
 
 /// What a map names, with the index of a position, nothing for tool, line, .. . Axes where joints
 /// are meant, and the reverse, are reported.
+/// `unit` of the map's load, which has to be there.
+LoadUnit read_load_unit(const GroupReader& item);
+
 struct MapItem {
   GroupReader group;
   std::string name;

@@ -100,13 +100,15 @@ class KeyChecker {
     const bool small_item = is_small_item(group.key, pattern);
     if (found != nullptr && found->axes_only && small_item) {
       faults_.at_key(node, tr("only axes have this key"));
+    } else if (found != nullptr && found->load_only && group.key != "load") {
+      faults_.at_key(node, tr("only load has this key"));
     } else if (found != nullptr) {
       check_value(node, *found);
     } else if (found_elsewhere != nullptr) {
       faults_.at_key(node, trf("is a key of sources of type {}; this one is {}",
                                source_names(found_elsewhere->sources), source_names(type_)));
     } else {
-      unknown(node, pattern, small_item);
+      unknown(node, pattern, small_item, group.key);
     }
   }
 
@@ -114,11 +116,12 @@ class KeyChecker {
     return pattern.ends_with(".ITEM") && axis_of_item(item) < 0 && joint_of_item(item) < 0;
   }
 
-  void unknown(ConfigNode& node, std::string_view pattern, bool small_item) {
+  void unknown(ConfigNode& node, std::string_view pattern, bool small_item, std::string_view item) {
     std::vector<std::string> names;
     for (const Setting& spec : key_table()) {
       const std::string_view name = name_below(spec, pattern);
       if (name.empty() || (spec.sources & type_) == 0 || (spec.axes_only && small_item)) continue;
+      if (spec.load_only && item != "load") continue;
       if (name == "NUMBER") {
         faults_.at_key(node, tr("is no tool number; must be a whole number, 1 to 99999"),
                        tr("as in 3: flat:6"));

@@ -14,8 +14,8 @@
 namespace kerf {
 namespace {
 
-constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",      "tool_offset_z",
-                                            "trigger", "counter", "counter_begun"};
+constexpr std::string_view kSmallItems[] = {"tool",    "line",    "spindle",       "tool_offset_z",
+                                            "trigger", "counter", "counter_begun", "load"};
 
 }  // namespace
 

@@ -118,6 +118,8 @@ std::optional<LiveConfig> parse_config(std::string_view text, const std::string&
   read_workshop(reader, config);
   read_source(reader.group("source"), config);
   note_what_is_said(*root, faults, config.said);
+  // Of FILE:NAME the file is meant beside the configuration.
+  if (config.material) config.said["material"] = *config.material;
   sort_by_line(diagnostics, before, path);
   const bool failed =
       std::any_of(diagnostics.begin() + static_cast<std::ptrdiff_t>(before), diagnostics.end(),

@@ -54,7 +54,7 @@ struct ConfigMachine {
   std::string spindle_spec;  ///< the text that `spindle` was read from
   std::optional<double> spindle_accel_rpm_per_s;
   WorkHolding holding;  ///< `chuck` and `tailstock`
-  std::optional<double> spindle_max_rpm, spindle_power_kw, spindle_torque_nm;
+  std::optional<double> spindle_max_rpm, spindle_power_kw, spindle_torque_nm, spindle_current_a;
   bool collisions = true;         ///< of its links, or of its model
   std::vector<NamedPair> ignore;  ///< PairRules::ignored
   /// `kinematics` and what belongs to it; links are those of `drawn`, too.

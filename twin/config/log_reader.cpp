@@ -38,6 +38,24 @@ void read_pins(const GroupReader& source, LogSettings& settings) {
   }
 }
 
+/// A map of the load alone, by the name of its column, is none of frames.
+void read_load_column(const GroupReader& map, LogSettings& settings) {
+  if (!map.is_there() || map.node()->children.size() != 1) return;
+  ConfigNode* const node = map.node()->child("load");
+  if (node == nullptr || node->faulty || node->child("pin") == nullptr) return;
+  const GroupReader item(node, map.faults());
+  LogLoad& load = settings.load.emplace();
+  load.column = item.text("pin").value_or("");
+  load.unit = read_load_unit(item);
+  item.number("scale", load.scale);
+  item.number("offset", load.offset);
+  for (const auto& key : node->children) {
+    if (key->key == "pin" || key->key == "unit" || key->key == "scale" || key->key == "offset")
+      continue;
+    map.faults().at_key(*key, tr("has no place beside pin"));
+  }
+}
+
 void refuse(const GroupReader& source, std::string_view key, const std::string& why) {
   if (ConfigNode* const node = source.find(key)) source.faults().at_key(*node, why);
 }
@@ -69,7 +87,8 @@ void read_log(const GroupReader& source, const MapReading& reading, LogSettings&
     settings.format = kFormats[static_cast<std::size_t>(word)];
   }
   const bool has_pins = source.has("pins") || source.has("pins_file");
-  const bool has_map = source.has("map");
+  read_load_column(source.group("map"), settings);
+  const bool has_map = source.has("map") && !settings.load;
   if (settings.format == LogFormat::kAuto && has_pins) settings.format = LogFormat::kHalsampler;
   if (settings.format == LogFormat::kAuto && has_map) settings.format = LogFormat::kCandump;
   read_pins(source, settings);

@@ -84,6 +84,19 @@ CoordinateKind coordinates_of(const LiveConfig& config, const PositionSource& so
   return config.common.coordinates.value_or(CoordinateKind::kAxes);
 }
 
+std::optional<LoadUnit> load_unit_of(const LiveConfig& config, const PositionSource& source) {
+  if (const auto* const log = dynamic_cast<const LogSource*>(&source)) return log->contents().load;
+  const auto unit_if = [](const auto& load, LoadUnit unit) {
+    return load ? std::optional(unit) : std::nullopt;
+  };
+  if (const auto* modbus = std::get_if<ModbusSettings>(&config.source))
+    return unit_if(modbus->load, modbus->load_unit);
+  if (const auto* can = std::get_if<CanSourceOptions>(&config.source))
+    return unit_if(can->map.load, can->map.load_unit);
+  const auto* const hal = std::get_if<HalSettings>(&config.source);
+  return hal && hal->load ? std::optional(hal->load->unit) : std::nullopt;
+}
+
 LiveFrameOptions frame_for(const LiveConfig& config, const PositionSource& source) {
   LiveFrameOptions frame;
   if (coordinates_of(config, source) == CoordinateKind::kJoints && !config.machine.joints.empty()) {

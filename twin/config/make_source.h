@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "base/diagnostic.h"
 #include "machine_io/position_source.h"
@@ -18,6 +19,9 @@ std::unique_ptr<PositionSource> make_source(const LiveConfig& config, Diagnostic
 
 /// Joints or axes, as far as source and configuration tell; a log says it itself.
 CoordinateKind coordinates_of(const LiveConfig& config, const PositionSource& source);
+
+/// Of the spindle's load; nothing where the source has none.
+std::optional<LoadUnit> load_unit_of(const LiveConfig& config, const PositionSource& source);
 
 /// How the samples of `source` (which make_source() made of `config`) are to be read. All of
 /// LiveFrameOptions but the lengths of the tool table. Joints are the axes of machine.joints,

@@ -79,6 +79,7 @@ struct Setting {
   const char* purpose = "";     ///< of the key, one line; tr() shows it
   const char* hint = "";        ///< what suits most, for diagnostics of keys; tr() shows it
   bool axes_only = false;       ///< below ITEM: not for tool, line, ...
+  bool load_only = false;       ///< below ITEM: for load alone
 
   // Of the option alone.
   const char* help = "";          ///< of `--help`; {} is the fallback with its unit. tr() shows it

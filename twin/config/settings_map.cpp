@@ -14,14 +14,14 @@ constexpr double kFactor = 1e12;  // counts are at most 2^64, lengths at least 1
 
 constexpr std::array kMapSettings{
     Setting{.key = "source.map",
-            .sources = kMapped,
+            .sources = kMapped | kForHal,
             .purpose = tr_noop("which numbers are which positions")},
     Setting{
         .key = "source.map.ITEM",
-        .sources = kMapped,
+        .sources = kMapped | kForHal,
         .purpose = tr_noop(
-            "ITEM: X Y Z A B C U V W or J0 .. J8, tool, line, spindle, tool_offset_z, or trigger "
-            "(a punch's: 0 is off)")},
+            "ITEM: X Y Z A B C U V W or J0 .. J8, tool, line, spindle, tool_offset_z, trigger (a "
+            "punch's: 0 is off), or load (of the spindle, by its drive; of hal load alone)")},
     Setting{.key = "source.map.ITEM.register",
             .type = T::kWhole,
             .sources = kForModbus,
@@ -147,9 +147,22 @@ constexpr std::array kMapSettings{
             .least = 0,
             .most = 9007199254740992.0,  // beyond 2^53 no double is exact
             .purpose = tr_noop("what they must hold")},
+    Setting{.key = "source.map.ITEM.unit",
+            .type = T::kWord,
+            .sources = kMapped | kForHal,
+            .words = "percent|percent-torque|kW|Nm|A",
+            .purpose = tr_noop("of the load: percent of the rated power or torque "
+                               "(machine.spindle_power_kw, spindle_torque_nm), power, torque, or "
+                               "current of the motor (machine.spindle_current_a)"),
+            .load_only = true},
+    Setting{.key = "source.map.ITEM.pin",
+            .type = T::kText,
+            .sources = kForHal | kForLog,
+            .purpose = tr_noop("HAL pin that has the load; of a CSV file the name of its column"),
+            .load_only = true},
     Setting{.key = "source.map.ITEM.scale",
             .type = T::kNumber,
-            .sources = kMapped,
+            .sources = kMapped | kForHal,
             .unit = "mm, degrees, rpm",
             .least = -kFactor,
             .most = kFactor,
@@ -157,7 +170,7 @@ constexpr std::array kMapSettings{
             .purpose = tr_noop("per count or turn; not 0. Multiplies the scale of a DBC signal")},
     Setting{.key = "source.map.ITEM.offset",
             .type = T::kNumber,
-            .sources = kMapped,
+            .sources = kMapped | kForHal,
             .unit = "mm, degrees, rpm",
             .least = -kFactor,
             .most = kFactor,

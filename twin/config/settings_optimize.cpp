@@ -87,6 +87,13 @@ constexpr std::array kOptimizeSettings{
             .fallback = "no",
             .help = tr_noop("divide straight blocks where the tool is engaged in another way"),
             .flag = "yes"},
+    Setting{.option = "--unroll",
+            .commands = kOptimize,
+            .type = T::kYesNo,
+            .fallback = "no",
+            .help = tr_noop("write loops and subroutines out, so that each pass has feeds of its "
+                            "own"),
+            .flag = "yes"},
     Setting{.option = "--json",
             .commands = kOptimize,
             .type = T::kFile,

@@ -169,7 +169,7 @@ constexpr std::array kOutputSettings{
     Setting{
         .key = "material",
         .option = "--material",
-        .commands = kRun | kOptimize,
+        .commands = kRun | kBesideMachine | kOptimize,
         .type = T::kText,
         .purpose = tr_noop("what the workpiece is made of, as --material has it"),
         .help = tr_noop("what the workpiece is made of: forces, torque, power, bending of tools "

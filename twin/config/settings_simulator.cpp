@@ -116,6 +116,12 @@ constexpr std::array kSimulatorSettings{
             .help = tr_noop("a fault on demand, repeatable"),
             .value_name = "KIND",
             .repeatable = true},
+    Setting{.option = "--load",
+            .commands = kMachine,
+            .type = T::kText,
+            .help = tr_noop("load of the spindle that is served: seconds of the program and the "
+                            "load there, straight on between them (default: 0)"),
+            .value_name = "S:LOAD,S:LOAD.."},
 };
 
 }  // namespace

@@ -226,11 +226,45 @@ void read_modbus(const GroupReader& source, const MapReading& reading, ModbusSet
     if (item.name == "spindle") settings.spindle = wanted;
     if (item.name == "tool_offset_z") settings.tool_offset_z = wanted;
     if (item.name == "trigger") settings.trigger = wanted;
+    if (item.name == "load") {
+      settings.load = wanted;
+      settings.load_unit = read_load_unit(item.group);
+    }
     if (item.name == "counter") settings.counter = wanted;
     if (item.name == "counter_begun") settings.counter_begun = wanted;
   }
   report_faults(validate(settings), source, reading);
 }
+
+LoadUnit read_load_unit(const GroupReader& item) {
+  item.missing("unit", trf("one of {}", fmt::join(kLoadUnitWords, ", ")),
+               tr("percent: of the rated power, as most drives tell it"));
+  const int word = item.word("unit");
+  return word >= 0 ? static_cast<LoadUnit>(word) : LoadUnit::kPercentOfPower;
+}
+
+namespace {
+
+/// HAL's pins have their names, but for the load's.
+void read_hal_load(const GroupReader& map, HalSettings& settings) {
+  if (!map.is_there()) return;
+  for (const auto& node : map.node()->children) {
+    if (node->faulty) continue;
+    if (node->key != "load") {
+      map.faults().at_key(*node, tr("is read from LinuxCNC's own pin; only load is chosen here"));
+      continue;
+    }
+    const GroupReader item(node.get(), map.faults());
+    HalLoad& load = settings.load.emplace();
+    item.missing("pin", tr("the name of a HAL pin"), tr("as in vfd.load-percentage"));
+    load.pin = item.text("pin").value_or("");
+    load.unit = read_load_unit(item);
+    item.number("scale", load.scale);
+    item.number("offset", load.offset);
+  }
+}
+
+}  // namespace
 
 void read_hal(const GroupReader& source, const ConfigSourceCommon& common, bool inch,
               HalSettings& settings) {
@@ -242,6 +276,7 @@ void read_hal(const GroupReader& source, const ConfigSourceCommon& common, bool 
     settings.kerf_hal_path =
         is_name ? node->scalar : resolved_path(*node, node->scalar, source.faults());
   }
+  read_hal_load(source.group("map"), settings);
   if (common.coordinates == CoordinateKind::kAxes) {
     source.faults().at_value(*source.find("coordinates"),
                              tr("axes is not allowed; must be joints: that is what HAL has"));

@@ -112,6 +112,7 @@ enum class FindingId : std::uint8_t {
   kAirCut,            ///< time at feed in no material
   kSpindleReversed,   ///< cuts while the spindle runs anticlockwise
   kEntryContact,      ///< a start in the middle of the program cuts what is in its way
+  kLoadDiffers,       ///< of a watched machine: its spindle takes what its cuts should not
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -314,6 +314,11 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
      tr_noop("A start at this line (--enter) goes straight from where the machine stands, through "
              "the workpiece or what holds it."),
      tr_noop("Go to the place that the summary names first, or begin at an earlier line.")},
+    {Id::kLoadDiffers, "load-differs", kWarning, Topic::kMachine,
+     tr_noop("For some seconds the spindle of a watched machine has taken more or less than its "
+             "cuts should (--material); a note where its load stands still."),
+     tr_noop("More: is the tool blunt? Less: is it broken? Else material, depth or tool are other "
+             "ones than kerf knows.")},
 }};
 
 constexpr bool in_order() {

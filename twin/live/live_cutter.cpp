@@ -9,6 +9,17 @@
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
+namespace {
+
+/// Only milling cuts are worked out.
+CuttingWish milling_wish(const StockModel& stock, const LiveCutOptions& options) {
+  CuttingWish wish = options.checks.cutting;
+  if (stock.sheet() || stock.turned()) wish.material.reset();
+  return wish;
+}
+
+}  // namespace
+
 LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& log,
                        LiveCutOptions options, std::unique_ptr<Program> program)
     : stock_(stock),
@@ -19,6 +30,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       source_watch_(stock, options_, log, facts_),
       machine_watch_(stock, options_, log),
       path_watch_(options_, matcher_, log, facts_),
+      loads_(milling_wish(stock, options_), log),
       look_ahead_(tools, options_),
       late_join_(options_, matcher_, cutter_, punch_) {
   if (program) follow_program(std::move(program));
@@ -26,6 +38,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
     punch_.emplace(options_, matcher_, cutter_.stage(), machine_watch_, log);
   }
   cutter_.stage().set_frame(work());
+  cutter_.stage().tell_loads([this](const CutLoadPart& part) { loads_.hear(part); });
 }
 
 void LiveCutter::follow_program(std::unique_ptr<Program> program) {
@@ -67,6 +80,7 @@ void LiveCutter::take_sound(const AxisSample& sample, double t_s, bool lost) {
   t_s_ = t_s;
   restarted_ |= sample.restarted;
   spindle_.take(sample, t_s);
+  loads_.take(sample, t_s);
   cutter_.cut_long_run(t_s);
   std::optional<Reading> seen = see(sample, t_s);
   if (!seen) return;
@@ -295,6 +309,7 @@ bool LiveCutter::is_idle() const {
 
 void LiveCutter::look() {
   cutter_.stage().complete();
+  loads_.judge(t_s_ - LoadWatch::kDelay_s);
   if (!is_idle()) look_ahead_.look(stock_, cutter_, matcher_, place_.tool, t_s_);
 }
 
@@ -305,6 +320,8 @@ void LiveCutter::finish() {
   cutter_.cut_run();
   if (program()) check_passed(std::numeric_limits<double>::infinity());
   if (punch_) punch_->finish(was_on_path_, t_s_);
+  cutter_.stage().complete();
+  loads_.judge(t_s_);
   cutter_.stage().finish(false);
   matcher_.stop();
 }

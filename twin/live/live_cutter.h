@@ -15,6 +15,7 @@
 #include "twin/job/tools.h"
 #include "twin/live/late_join.h"
 #include "twin/live/live_cut_options.h"
+#include "twin/live/load_watch.h"
 #include "twin/live/look_ahead.h"
 #include "twin/live/machine_watch.h"
 #include "twin/live/path_matcher.h"
@@ -72,6 +73,9 @@ class LiveCutter {
                   std::function<std::unique_ptr<Program>()> reopen);
   /// The workpiece was another cutter's before, which has done with it what goes before.
   void go_on_from(const LiveCutter& other) { cutter_.stage().go_on_from(other.stage()); }
+  /// What the other one has learnt of the spindle's load counts here as well.
+  void know_loads_of(const LiveCutter& other) { loads_.go_on_from(other.loads_); }
+  const LoadWatch& loads() const { return loads_; }
   /// Where the machine was before the first sample: it is seen, and not counted.
   void begin_at(const AxisSample& sample, double t_s) {
     take(sample, t_s, false);
@@ -136,6 +140,7 @@ class LiveCutter {
   SourceWatch source_watch_;
   MachineWatch machine_watch_;
   PathWatch path_watch_;
+  LoadWatch loads_;
   LookAhead look_ahead_;
   std::optional<PunchFollower> punch_;  ///< of a sheet that is punched
   LateJoin late_join_;

@@ -25,6 +25,16 @@ Json event(const char* name, const EventHead& head) {
   return out;
 }
 
+Json load_json(const std::optional<LoadNow>& load) {
+  if (!load) return nullptr;
+  Json out;
+  out["unit"] = word_of(load->unit);
+  out["measured"] = rounded(load->measured);
+  out["low"] = known(load->low.value_or(0), load->low.has_value());
+  out["high"] = known(load->high.value_or(0), load->high.has_value());
+  return out;
+}
+
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -53,6 +63,7 @@ std::string status_json(const LiveStatus& status, const EventHead& head) {
   out["program_s"] = known(place.program_s, followed);
   out["remaining_s"] = known(status.remaining_s, followed && status.remaining_s >= 0);
   out["removed_mm3"] = rounded(status.removed_mm3);
+  out["load"] = load_json(status.load);
   out["collision_in_s"] = known(status.collision_in_s, status.collision_in_s >= 0);
   out["collision_line"] = status.collision_in_s >= 0 ? Json(status.collision_line) : Json(nullptr);
   return line_of(out);

@@ -431,6 +431,7 @@ LiveStatus LiveSession::status_now(LiveState state, double age_s) {
   status.dropped = queue_.dropped();
   status.samples = samples_;
   if (state == LiveState::kLive) status.feed_mm_per_min = feed_meter_.mm_per_min();
+  status.load = cutter.loads().now();
   if (status.place.off_path) status.off_path_mm = status.place.distance_mm;
   status.removed_mm3 = run.removed_mm3;
   for (const LiveRun& past : shift_->past()) {

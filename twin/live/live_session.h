@@ -96,6 +96,7 @@ struct LiveStatus {
   /// Of the tip on the part, from the positions (FeedMeter); none: the source is not live, or it is
   /// not known yet.
   std::optional<double> feed_mm_per_min;
+  std::optional<LoadNow> load;  ///< of the spindle
 };
 
 /// Told from the thread in LiveSession::run().

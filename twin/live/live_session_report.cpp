@@ -25,6 +25,7 @@ void LiveSession::conclude() {
         static_cast<double>(first_->sample.host_ns - first_->sample.device_ns) * 1e-9;
   }
   const LiveCutter& cutter = shift_->cutter();
+  live_.load = cutter.loads().report();
   if (const ProgramAhead* program = cutter.program()) {
     report_.program = program->summary();
     if (!program->complete()) report_.program.stopped_early = true;

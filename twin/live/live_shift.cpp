@@ -217,6 +217,7 @@ void LiveShift::begin_next() {
   Run next = make_run(0, stock ? *stock : *stock_, std::move(opened));
   next.part = run_.part + (new_part ? 1 : 0);
   if (!new_part) next.cutter->go_on_from(current());
+  next.cutter->know_loads_of(current());
   if (before_) next.cutter->begin_at(before_->first, before_->second);
   next.stock = std::move(stock);
   scouts_.push_back(std::move(next));
@@ -236,6 +237,7 @@ void LiveShift::begin_scouts() {
     scout.part = run_.part + (new_part ? 1 : 0);
     scout.cutter->set_looks_ahead(false);
     if (!new_part) scout.cutter->go_on_from(current());
+    scout.cutter->know_loads_of(current());
     if (before_) scout.cutter->begin_at(before_->first, before_->second);
     scouts_.push_back(std::move(scout));
   }

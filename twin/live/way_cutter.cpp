@@ -63,6 +63,7 @@ WayCutter::WayCutter(StockModel& stock, const ToolSources& tools, FindingLog& lo
       run_(ToolPathTolerance::of_cell(stock.cell_mm()).tip_mm, options.follow.lever_mm) {
   stage_.watch_machine();
   stage_.check_by(options.checks);
+  if (options.checks.cutting.material) stage_.log_engagement(engagement_);
 }
 
 std::span<const TorchMaterial> WayCutter::update_materials() {

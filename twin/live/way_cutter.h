@@ -16,6 +16,7 @@
 #include "twin/live/reading.h"
 #include "twin/live/spindle_memory.h"
 #include "twin/process/cut_stage.h"
+#include "twin/process/engagement_log.h"
 #include "twin/report/live_facts.h"
 
 namespace kerf {
@@ -84,6 +85,7 @@ class WayCutter {
   const bool is_beam_;
   LiveFacts& facts_;
   ToolResolver resolver_;
+  EngagementLog engagement_{false};  ///< where the material is known
   CutStage stage_;
   DrivenRun run_;  ///< not yet cut
   ProgramAhead* program_ = nullptr;

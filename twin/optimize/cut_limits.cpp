@@ -49,6 +49,7 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
       rake_deg_(cutter.edge_traits().rake_deg),
       profile_(edge_points(cutter), material ? material->mc : 0),
       material_(material) {
+  is_rounded_ = !cutter.spec().starts_with("flat");
   if (!cutter.holder().empty()) stickout_mm_ = cutter.holder().front().from_z_mm;
   if (!material_ || teeth_ == 0) return;
   const double helix_deg = cutter.edge_traits().helix_deg.value_or(kUsualHelix_deg);
@@ -56,8 +57,17 @@ CutLimits::CutLimits(const Cutter& cutter, const std::optional<Material>& materi
   model_.emplace(*material_, profile_, edges, rake_deg_);
 }
 
+double CutLimits::outline_mm2(const EngagementLook& look) const {
+  const MillingCut cut = cut_of(look, 0);
+  return profile_.sum_to(cut.deep_mm).half_mm2 * (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
+}
+
 double CutLimits::section_mm2(const EngagementLook& look) const {
-  if (!look.is_plunge) return look.wide_mm * look.deep_mm;
+  // No more is cut than as wide and as high as that, and of what is not flat no more than the
+  // outline has between the angles.
+  const double all_mm2 = look.wide_mm * look.deep_mm;
+  if (!look.is_plunge && is_rounded_) return std::min(all_mm2, outline_mm2(look));
+  if (!look.is_plunge) return all_mm2;
   const double wide_mm = std::min(2 * radius_mm_, look.wide_mm + kDiscStep * 2 * radius_mm_);
   return kPi / 4 * wide_mm * wide_mm;
 }
@@ -67,6 +77,7 @@ CutLimits::Place CutLimits::place(const EngagementLook& look, double rpm) const 
   place.at_1mm[CutLimit::kRate] = section_mm2(look) / 60;
   if (teeth_ == 0 || rpm <= 0) return place;
   place.teeth_per_min = teeth_ * rpm;
+  place.rpm = rpm;
   const double share = look.is_plunge ? std::sin(point_deg_ / 2 * kPi / 180)
                                       : chip_of(profile_, cut_of(look, rpm)).most_mm;
   place.at_1mm[CutLimit::kChip] = std::max(kLeastShare, share);
@@ -85,10 +96,7 @@ void CutLimits::add_forces(const EngagementLook& look, double rpm, Place& place)
   } else {
     const MillingCut cut = cut_of(look, rpm);
     const MillingLoad load = model_->load_of(cut);
-    // Of what is not flat the engagement is not the same all over the height: no more is cut than
-    // as wide and as high as that.
-    const double all_mm2 =
-        profile_.sum_to(cut.deep_mm).half_mm2 * (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
+    const double all_mm2 = outline_mm2(look);
     const double share = all_mm2 > 0 ? std::min(1.0, section_mm2(look) / all_mm2) : 1;
     force_n = share * load.force_n.high;
     power_w = share * load.power_w.high;
@@ -104,7 +112,11 @@ void CutLimits::add_forces(const EngagementLook& look, double rpm, Place& place)
 double CutLimits::most_feed(const FeedAims& aims, const Place& place) {
   double most = std::numeric_limits<double>::infinity();
   for (const CutLimit limit : kCutLimits) {
-    const std::optional<double>& allowed = aims.most[limit];
+    std::optional<double> allowed = aims.most[limit];
+    if (limit == CutLimit::kPower && aims.spindle_torque_nm > 0) {
+      const double most_kw = aims.spindle_torque_nm * 2 * kPi * place.rpm / 60 / 1000;
+      allowed = std::min(allowed.value_or(most_kw), most_kw);
+    }
     if (!allowed || place.at_1mm[limit] <= 0) continue;
     const double times = *allowed / place.at_1mm[limit];
     if (limit == CutLimit::kRate) {

@@ -35,17 +35,20 @@ struct FeedAims {
   std::optional<double> most_feed_mm_per_min;
   std::optional<double> air_feed_mm_per_min;
   bool splits = false;
+  bool unrolls = false;
+  double spindle_torque_nm = 0;      ///< with a material: at no speed more; 0: not known
+  double spindle_max_rpm = 0;        ///< what it really does where more is asked for; 0: not known
   std::optional<Material> material;  ///< for forces
 
   bool limits_cutting() const {
     for (const auto& one : most.values) {
       if (one) return true;
     }
-    return false;
+    return spindle_torque_nm > 0;
   }
   bool needs_teeth() const {
     return most[CutLimit::kChip] || most[CutLimit::kForce] || most[CutLimit::kPower] ||
-           most[CutLimit::kDeflection];
+           most[CutLimit::kDeflection] || spindle_torque_nm > 0;
   }
 };
 
@@ -66,6 +69,8 @@ class CutLimits {
   CutLimits(const Cutter& cutter, const std::optional<Material>& material);
 
   bool knows_teeth() const { return teeth_ > 0; }
+  /// What it removes is no more than its section, and may be less: it is no flat tool.
+  bool is_rounded() const { return is_rounded_; }
   bool knows_stickout() const { return stickout_mm_.has_value(); }
 
   /// Of a place where the tool is engaged.
@@ -73,6 +78,7 @@ class CutLimits {
     PerLimit<double> at_1mm;  ///< loads at 1 mm per tooth; of the rate at 1 mm/min
     double teeth_per_min = 0;
     double exponent = 1;  ///< of the feed, that forces grow with
+    double rpm = 0;
   };
   /// `rpm`: of the spindle. Without it, or teeth, nothing is known but the rate.
   Place place(const EngagementLook& look, double rpm) const;
@@ -86,9 +92,12 @@ class CutLimits {
   double section_mm2(const EngagementLook& look) const;
 
  private:
+  /// Of the tool's outline up to that depth, as wide as the engagement is.
+  double outline_mm2(const EngagementLook& look) const;
   void add_forces(const EngagementLook& look, double rpm, Place& place) const;
 
   int teeth_ = 0;
+  bool is_rounded_ = false;
   double radius_mm_ = 0, shank_mm_ = 0, point_deg_ = 180;
   std::optional<double> flute_mm_, stickout_mm_, rake_deg_;
   EdgeProfile profile_;

@@ -15,6 +15,12 @@ namespace {
 /// Of a motion that is soft all along, as sums of lengths are.
 constexpr double kWhole = 0.999;
 
+/// Limits of what does not hang on what is removed.
+FeedAims without_rate(FeedAims aims) {
+  aims.most[CutLimit::kRate].reset();
+  return aims;
+}
+
 bool goes_down_steeply(const Motion& m, double length_mm) {
   const double down_mm = m.from_mm.z - m.to_mm.z;
   return down_mm > 0 && down_mm > std::sin(FeedSurvey::kSteep_rad) * length_mm;
@@ -46,11 +52,13 @@ void FeedSurvey::on_step(std::uint64_t number, const Motion& m, const TimedStep&
   motion.is_per_turn = m.feed_per_rev;
   motion.goes_down = goes_down_steeply(m, step.length_mm);
   rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
+  if (aims_.spindle_max_rpm > 0) rpm_ = std::min(rpm_, aims_.spindle_max_rpm);
   // Through a rounded corner LinuxCNC goes at the faster one of two feeds: the other one's cut is
   // over by then.
   speed_mm_per_min_ = step.programmed_mm_per_min;
   if (step.peak_mm_per_min > 0)
     speed_mm_per_min_ = std::min(speed_mm_per_min_, step.peak_mm_per_min);
+  motion.speed_mm_per_min = speed_mm_per_min_;
 }
 
 void FeedSurvey::on_cut(std::uint64_t number, double removed_mm3, double /*depth_mm*/) {
@@ -82,9 +90,12 @@ void FeedSurvey::on_part(const EngagementLook& look, double length_mm) {
   if (!limits_->knows_teeth()) toothless_.emplace(tool_, shape_);
   if (!limits_->knows_stickout()) unheld_.emplace(tool_, shape_);
   const CutLimits::Place place = limits_->place(look, rpm_);
-  part.limit_mm_per_min = CutLimits::most_feed(aims_, place);
+  part.limit_mm_per_min = CutLimits::most_feed(without_rate(aims_), place);
+  part.section_mm2 = limits_->section_mm2(look);
+  part.is_rounded = limits_->is_rounded() && !look.is_plunge;
   const PerLimit<double> loads = CutLimits::loads(place, speed_mm_per_min_);
   for (const CutLimit limit : kCutLimits) {
+    if (limit == CutLimit::kRate) continue;  // limit_rates()
     if (loads[limit] > peaks_[limit].most) peaks_[limit] = {loads[limit], motion.source};
   }
 }
@@ -125,8 +136,55 @@ void FeedSurvey::soften() {
   walk(std::span(parts_).subspan(begin));
 }
 
+void FeedSurvey::limit_rates(std::size_t from, std::size_t to, double share) {
+  PeakLoad& peak = peaks_[CutLimit::kRate];
+  for (const SurveyedMotion& motion : std::span(motions_).subspan(from, to - from)) {
+    for (SurveyedPart& part : std::span(parts_).subspan(motion.first_part, motion.parts)) {
+      if (!part.is_engaged || part.section_mm2 <= 0) continue;
+      const double section_mm2 = part.section_mm2 * (part.is_rounded ? share : 1);
+      const double rate = section_mm2 * motion.speed_mm_per_min / 60;
+      if (rate > peak.most) peak = {rate, motion.source};
+      if (const auto& most = aims_.most[CutLimit::kRate]; most && section_mm2 > 0)
+        part.limit_mm_per_min = std::min(part.limit_mm_per_min, 60 * *most / section_mm2);
+    }
+  }
+}
+
+/// The section that is seen ahead of a ball is more than what it takes beside an earlier pass. What
+/// motions in a row have removed says how much more; not where the tool enters or leaves material
+/// meanwhile.
+void FeedSurvey::limit_rates() {
+  std::size_t from = 0;
+  double removed_mm3 = 0, most_mm3 = 0, way_mm = 0;
+  bool has_end = false;
+  const auto close = [&](std::size_t to) {
+    const bool is_within = !has_end && most_mm3 > 0 && removed_mm3 > 0;
+    limit_rates(from, to, is_within ? std::min(1.0, removed_mm3 / most_mm3) : 1);
+    from = to;
+    removed_mm3 = most_mm3 = way_mm = 0;
+    has_end = false;
+  };
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const SurveyedMotion& motion = motions_[i];
+    const auto its = std::span(parts_).subspan(motion.first_part, motion.parts);
+    removed_mm3 += motion.removed_mm3;
+    double diameter_mm = 0;
+    for (const SurveyedPart& part : its) {
+      // Softened are half a diameter behind the entry and ahead of the exit.
+      has_end = has_end || part.is_fresh || !part.is_engaged || part.soft_mm() > 0;
+      if (!part.is_engaged) continue;
+      way_mm += part.length_mm;
+      most_mm3 += part.section_mm2 * part.length_mm;
+      diameter_mm = static_cast<double>(part.diameter_mm);
+    }
+    if (diameter_mm > 0 && way_mm >= kRateWay * diameter_mm) close(i + 1);
+  }
+  close(motions_.size());
+}
+
 void FeedSurvey::settle() {
   soften();
+  limit_rates();
   for (SurveyedMotion& motion : motions_) {
     double engaged_mm = 0, soft_mm = 0;
     for (const SurveyedPart& part : std::span(parts_).subspan(motion.first_part, motion.parts)) {
@@ -135,7 +193,8 @@ void FeedSurvey::settle() {
       soft_mm += part.soft_mm();
       motion.limit_mm_per_min = std::min(motion.limit_mm_per_min, part.limit_mm_per_min);
     }
-    const bool is_soft = engaged_mm > 0 && soft_mm >= kWhole * engaged_mm;
+    const double least = aims_.splits ? kWhole : kSoftBlock;
+    const bool is_soft = engaged_mm > 0 && soft_mm >= least * engaged_mm;
     if (is_soft && !motion.goes_down) motion.limit_mm_per_min *= kSoftShare;
   }
 }

@@ -27,6 +27,7 @@ struct SurveyedMotion {
   double limit_mm_per_min = std::numeric_limits<double>::infinity();
   double allowed_mm_per_min = std::numeric_limits<double>::infinity();  ///< by the axes
   double removed_mm3 = 0;
+  double speed_mm_per_min = 0;  ///< that the machine reaches, no faster than its own feed
   std::size_t first_part = 0, parts = 0;
   MotionKind kind = MotionKind::kFeed;
   bool is_per_turn = false;  ///< G95
@@ -42,7 +43,9 @@ struct SurveyedPart {
   /// Where the tool enters and where it leaves: from its beginning, and up to its end.
   double soft_front_mm = 0, soft_back_mm = 0;
   double soft_mm() const { return std::min(length_mm, soft_front_mm + soft_back_mm); }
+  double section_mm2 = 0;  ///< across the way, at most
   float diameter_mm = 0;
+  bool is_rounded = false;  ///< its tool: the section may be less
   bool is_engaged = false;
   bool is_fresh = false;  ///< the tool comes from a traverse, or is another one
 };
@@ -57,8 +60,11 @@ struct PeakLoad {
 class FeedSurvey final : public MotionRecorder, public EngagementListener {
  public:
   /// Where a tool comes into material, and where it leaves it, for so much of its diameter of the
-  /// way, it is given this part of what it may.
-  static constexpr double kSoftWay = 0.5, kSoftShare = 0.7;
+  /// way, it is given this part of what it may. A block that is not divided has it where it lies in
+  /// there with half of its way in material.
+  static constexpr double kSoftWay = 0.5, kSoftShare = 0.7, kSoftBlock = 0.5;
+  /// What a rounded tool removes is added up over so much of its diameter of the way.
+  static constexpr double kRateWay = 0.5;
   /// What goes down more steeply than this drills.
   static constexpr double kSteep_rad = 10 * kPi / 180;
 
@@ -87,6 +93,8 @@ class FeedSurvey final : public MotionRecorder, public EngagementListener {
 
  private:
   void soften();
+  void limit_rates();
+  void limit_rates(std::size_t from, std::size_t to, double share);
 
   FeedAims aims_;
   std::vector<SurveyedMotion> motions_;

@@ -187,6 +187,12 @@ std::string optimize_text(const OptimizeReport& report) {
   out += report.changed == 0
              ? trf("none of {} blocks needs another one\n", report.blocks)
              : trf("{} of {} blocks have another one\n", report.changed, report.blocks);
+  if (!report.unrolled_lines.empty()) {
+    out +=
+        indent() + trf("{} passes of loops and {} calls are written out, {} lines; lines are "
+                       "those of the new program\n",
+                       report.unrolled_passes, report.unrolled_calls, report.unrolled_lines.size());
+  }
   if (report.split_blocks > 0)
     out += indent() + trf("{} blocks are {} pieces now; lines are those of the new program\n",
                           report.split_blocks, report.split_pieces);
@@ -247,6 +253,10 @@ std::string optimize_json(const OptimizeReport& report, const std::string& versi
                      {"blocks", report.blocks},
                      {"changed", report.changed},
                      {"split", {{"blocks", report.split_blocks}, {"pieces", report.split_pieces}}},
+                     {"unroll",
+                      {{"passes", report.unrolled_passes},
+                       {"calls", report.unrolled_calls},
+                       {"line_before", report.unrolled_lines}}},
                      {"motions_elsewhere", report.elsewhere},
                      {"time_s",
                       {{"before", rounded(report.before.duration_s)},

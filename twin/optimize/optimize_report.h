@@ -30,7 +30,10 @@ struct OptimizeReport {
   std::size_t blocks = 0;                          ///< of PROGRAM, with moves at a feed
   std::size_t changed = 0;                         ///< of them, those that run at another feed
   std::size_t split_blocks = 0, split_pieces = 0;  ///< divided, and what has come of them
-  std::size_t elsewhere = 0;                       ///< motions of subroutines in other files
+  /// Loops and subroutines that are written out, and of each line of that the program's.
+  std::size_t unrolled_passes = 0, unrolled_calls = 0;
+  std::vector<std::uint32_t> unrolled_lines;
+  std::size_t elsewhere = 0;  ///< motions of subroutines in other files
   /// Lines whose feeds are left as they are, by why.
   std::map<FeedLeft, std::vector<std::uint32_t>> left;
   /// A block that is run several times, with the tool engaged in different ways: it gets what the
@@ -51,10 +54,11 @@ std::string optimize_text(const OptimizeReport& report);
 
 /// kerf-optimize/1: schema, version, optimize: program, out, limits (by their
 /// keys, of key_of(CutLimit); feed_mm_per_min, air_feed_mm_per_min, of those that were given),
-/// blocks, changed, motions_elsewhere, time_s (before, after, model), tools (number, shape,
-/// before_s, after_s), peaks (by limit: before, before_line, after, after_line, at the speed that
-/// the planner reaches), left (reason, blocks, lines: the first kMostLines), shared (line, motions,
-/// slowest_mm_per_min, fastest_mm_per_min), digest.
+/// blocks, changed, unroll (passes, calls, line_before: of each line of the program written out
+/// that of PROGRAM, 0 for remarks), motions_elsewhere, time_s (before, after, model), tools
+/// (number, shape, before_s, after_s), peaks (by limit: before, before_line, after, after_line, at
+/// the speed that the planner reaches), left (reason, blocks, lines: the first kMostLines), shared
+/// (line, motions, slowest_mm_per_min, fastest_mm_per_min), digest.
 std::string optimize_json(const OptimizeReport& report, const std::string& version);
 inline constexpr std::size_t kMostLines = 1000;
 

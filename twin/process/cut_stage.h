@@ -49,6 +49,9 @@ class CutStage : private StepSink {
   /// From now on it is told how milling tools are engaged. Before the first motion; outlives the
   /// stage.
   void log_engagement(EngagementLog& log) { site_.engagement = &log; }
+  /// It is told what the cuts of milling tools ask of the spindle, where the material is known and
+  /// engagement is logged. Before the first motion.
+  void tell_loads(CutLoadHearer hearer) { site_.hears_loads = std::move(hearer); }
   /// Hears of each motion that is reported on, and of what is cut. Before the first motion;
   /// outlives the stage.
   void record_by(MotionRecorder& recorder) { site_.recorder = &recorder; }

@@ -12,6 +12,7 @@ struct CuttingWish {
   std::optional<Material> material;  ///< none: no forces
   double spindle_power_kw = 0;       ///< 0: not known
   double spindle_torque_nm = 0;      ///< 0: not known
+  double spindle_current_a = 0;      ///< of its motor at that torque; 0: not known
   double most_bend_mm = 0;           ///< of a tool's tip; 0: not judged
   bool wants_climb = false;          ///< conventional milling is told
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "machine_io/position_source.h"
 #include "twin/report/live_facts.h"
+#include "twin/report/live_load.h"
 #include "twin/report/live_run.h"
 
 namespace kerf {
@@ -29,7 +31,8 @@ struct LiveReport {
   double jitter_ms = 0;           ///< greatest deviation from that offset
   std::uint64_t clock_steps = 0;  ///< this computer's clock was set meanwhile
   std::uint64_t warnings_ahead = 0;
-  std::vector<LiveRun> runs;  ///< one where the machine has run one program, or none
+  std::optional<LoadReport> load;  ///< of the spindle; none: the source tells none
+  std::vector<LiveRun> runs;       ///< one where the machine has run one program, or none
 };
 
 }  // namespace kerf

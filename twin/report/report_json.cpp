@@ -177,6 +177,27 @@ Json findings_json(const Report& report) {
   return out;
 }
 
+Json load_json(const LoadReport& load) {
+  Json out;
+  out["unit"] = word_of(load.unit);
+  out["samples"] = load.samples;
+  out["least"] = rounded(load.least);
+  out["most"] = rounded(load.most);
+  out["idle"] = Json::array();
+  for (const LoadReport::Idle& idle : load.idle)
+    out["idle"].push_back({{"rpm", rounded(idle.rpm)}, {"load", rounded(idle.load)}});
+  out["tools"] = Json::array();
+  for (const LoadReport::Tool& tool : load.tools) {
+    out["tools"].push_back({{"number", tool.number},
+                            {"judged_s", rounded(tool.judged_s)},
+                            {"differs_s", rounded(tool.differs_s)},
+                            {"measured", rounded(tool.measured)},
+                            {"low", rounded(tool.low)},
+                            {"high", rounded(tool.high)}});
+  }
+  return out;
+}
+
 Json live_json(const LiveReport& live) {
   const LiveFacts& f = live.facts;
   Json out;
@@ -216,6 +237,7 @@ Json live_json(const LiveReport& live) {
                   {"jitter_ms", rounded(live.jitter_ms)},
                   {"steps", live.clock_steps}};
   out["warnings_ahead"] = live.warnings_ahead;
+  out["load"] = live.load ? load_json(*live.load) : Json(nullptr);
   out["runs"] = Json::array();
   for (const LiveRun& run : live.runs) out["runs"].push_back(run_json(run));
   return out;

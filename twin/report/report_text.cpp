@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "twin/job/load_text.h"
 #include "twin/report/compare_report.h"
 #include "twin/report/engagement_report.h"
 #include "twin/report/load_report.h"
@@ -47,7 +48,7 @@ std::string findings_text(const FindingLog& log) {
     if (told < log.count(severity)) {
       line += trf("{}{} more", line.empty() ? "" : ", ", log.count(severity) - told);
     }
-    out += fmt::format("{:<10}{}\n", tr(word), line);
+    out += fmt::format("{:<9} {}\n", tr(word), line);
   }
   return out;
 }
@@ -206,6 +207,24 @@ void add_unchecked(std::string& out, const Report& report) {
   }
 }
 
+void add_spindle_load(std::string& out, const LoadReport& load) {
+  const std::string_view sign = sign_of(load.unit);
+  out += trf("load      {} to {} {}", load_text(load.least), load_text(load.most), sign);
+  for (const LoadReport::Idle& idle : load.idle) {
+    out += idle.rpm > 0
+               ? trf(", {} {} in the air at {:.0f} rpm", load_text(idle.load), sign, idle.rpm)
+               : trf(", {} {} in the air", load_text(idle.load), sign);
+  }
+  out += '\n';
+  for (const LoadReport::Tool& tool : load.tools) {
+    out += trf("          T{} {} {}, {} to {} should be; over {}", tool.number,
+               load_text(tool.measured), sign, load_text(tool.low), load_text(tool.high),
+               duration_text(tool.judged_s));
+    if (tool.differs_s > 0) out += trf(", {} of it beyond", duration_text(tool.differs_s));
+    out += '\n';
+  }
+}
+
 void add_live(std::string& out, const LiveReport& live) {
   const LiveFacts& f = live.facts;
   out += trf("source    {}: {} samples in {}, {:.0f} a second\n", live.source, f.samples,
@@ -241,6 +260,7 @@ void add_live(std::string& out, const LiveReport& live) {
             f.on_path, f.following_sum_mm / static_cast<double>(f.on_path), f.following_max_mm,
             f.off_path, f.off_path_max_mm);
   }
+  if (live.load) add_spindle_load(out, *live.load);
   if (live.jitter_ms > 0 || live.clock_steps > 0) {
     out +=
         trf("clocks    the device's and this computer's keep together within {:.1f} ms{}\n",

@@ -442,6 +442,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   if (!std::isnan(place.spindle_rpm)) moment->spindle_rpm = place.spindle_rpm;
   moment->removed_mm3 = status.removed_mm3;
   moment->measured_mm_per_min = status.feed_mm_per_min;
+  if (status.load) moment->spindle_load = text_of(*status.load);
   if (program_ && place.followed && !program_->track->empty()) {
     const TrackPosition at = program_->track->place_at(place.program_s);
     set_feed(program_->track->motion(std::min(at.motion, program_->track->size() - 1)),

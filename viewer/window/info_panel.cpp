@@ -118,6 +118,7 @@ void draw_machine_values(const PanelContext& context) {
   line(Text::kTool, tool_text(context));
   const char* turn = moment.spindle_rpm > 0.0 ? " M3" : moment.spindle_rpm < 0.0 ? " M4" : "";
   line(Text::kSpindle, fmt::format("{:.0f} /min{}", std::abs(moment.spindle_rpm), turn));
+  if (!moment.spindle_load.empty()) line(Text::kLoad, moment.spindle_load);
   line(Text::kFeed, feed_text(context));
   line(Text::kCoolant, moment.coolant.empty() ? "-" : moment.coolant);
   line(Text::kRemoved, context.measures.volume(moment.removed_mm3));

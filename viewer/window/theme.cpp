@@ -4,7 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "viewer/window/letters.h"
 
 namespace kerf {
 namespace {
@@ -26,21 +30,49 @@ std::string font_file(const char* name) {
   return "";
 }
 
-ImFont* add_font(const char* name, float height_px) {
-  ImFontAtlas* atlas = ImGui::GetIO().Fonts;
+/// Pairs of first and last letter, ended by 0, as Dear ImGui has them.
+using LetterRanges = ImVector<ImWchar>;
+
+ImFontConfig font_config(float height_px, const LetterRanges& letters) {
   ImFontConfig config;
   // Whole pixels: letters stay sharp, and a column of figures stays a column.
   config.OversampleH = 1;
   config.OversampleV = 1;
   config.PixelSnapH = true;
   config.SizePixels = std::round(height_px);
+  config.GlyphRanges = letters.Data;
+  return config;
+}
+
+ImFont* add_font(const char* name, float height_px, const LetterRanges& letters) {
+  ImFontAtlas* atlas = ImGui::GetIO().Fonts;
+  ImFontConfig config = font_config(height_px, letters);
   if (const std::string path = font_file(name); !path.empty()) {
     if (ImFont* font = atlas->AddFontFromFileTTF(path.c_str(), config.SizePixels, &config)) {
       return font;
     }
   }
   config.SizePixels = std::round(height_px * kBuiltInHeight_px / kTextHeight_px);
+  config.GlyphRanges = nullptr;
   return atlas->AddFontDefault(&config);
+}
+
+/// To the font that was added last; letters that this one has keep its shape.
+void merge_font(const FontFace& font, float height_px, const LetterRanges& letters) {
+  ImFontConfig config = font_config(height_px, letters);
+  config.MergeMode = true;
+  config.FontNo = font.face;
+  ImGui::GetIO().Fonts->AddFontFromFileTTF(font.path.c_str(), config.SizePixels, &config);
+}
+
+/// Western Europe's, and these.
+LetterRanges ranges_of(const std::vector<char16_t>& letters) {
+  ImFontGlyphRangesBuilder builder;
+  builder.AddRanges(ImGui::GetIO().Fonts->GetGlyphRangesDefault());
+  for (const char16_t letter : letters) builder.AddChar(letter);
+  LetterRanges ranges;
+  builder.BuildRanges(&ranges);
+  return ranges;
 }
 
 /// Of a dark panel; of a light one what differs as much from its ground.
@@ -100,13 +132,24 @@ const theme::Palette theme::kLightPalette{
     .head = IM_COL32(44, 48, 54, 255),
 };
 
-Fonts load_fonts(float scale) {
-  ImGui::GetIO().Fonts->Clear();
+Fonts load_fonts(float scale, const std::string& language) {
+  ImFontAtlas* atlas = ImGui::GetIO().Fonts;
+  atlas->Clear();
+  const std::vector<char16_t> letters = letters_of(language);
+  const LetterRanges ranges = ranges_of(letters);
+  std::optional<FontFace> other;
+  if (has_east_asian(letters)) other = east_asian_font();
   Fonts fonts;
-  fonts.text = add_font("DejaVuSans.ttf", kTextHeight_px * scale);
-  fonts.mono = add_font("DejaVuSansMono.ttf", kMonoHeight_px * scale);
-  fonts.readout = add_font("DejaVuSansMono.ttf", kReadoutHeight_px * scale);
+  fonts.text = add_font("DejaVuSans.ttf", kTextHeight_px * scale, ranges);
+  if (other) merge_font(*other, kTextHeight_px * scale, ranges);
+  fonts.mono = add_font("DejaVuSansMono.ttf", kMonoHeight_px * scale, ranges);
+  if (other) merge_font(*other, kMonoHeight_px * scale, ranges);
+  // Figures and names of axes.
+  fonts.readout = add_font("DejaVuSansMono.ttf", kReadoutHeight_px * scale, ranges);
   ImGui::GetIO().FontDefault = fonts.text;
+  atlas->Build();
+  // Here, while `ranges` lives, and since a Chinese font has 17 MB.
+  atlas->ClearInputData();
   return fonts;
 }
 

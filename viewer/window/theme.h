@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <string>
+
 #include "base/diagnostic.h"
 
 namespace kerf {
@@ -15,8 +17,10 @@ struct Fonts {
 };
 
 /// DejaVu where it is installed (Debian package fonts-dejavu-core), else the font that is built
-/// into Dear ImGui. Replaces what was loaded before. Latin letters alone.
-Fonts load_fonts(float scale);
+/// into Dear ImGui; Chinese from another one (letters.h). Replaces what was loaded before. Of the
+/// letters those of Western Europe, and what the texts of the language hold: others, as in comments
+/// of a program, are shown as `?`. Takes 10 to 100 ms.
+Fonts load_fonts(float scale, const std::string& language);
 
 /// Colours and distances, for this scale.
 void set_style(float scale, bool is_light);

@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "base/translate.h"
+#include "viewer/window/letters.h"
 #include "viewer/window/panels.h"
 
 namespace kerf {
@@ -237,31 +242,53 @@ void draw_theme(const PanelContext& context) {
 void draw_units(const PanelContext& context) {
   LengthUnit& units = context.settings->units;
   for (const LengthUnit candidate : {LengthUnit::kMm, LengthUnit::kInch}) {
+    if (candidate != LengthUnit::kMm) ImGui::SameLine();
     if (ImGui::RadioButton(Measures(candidate).name(), candidate == units)) units = candidate;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s  [U]", context.word(Text::kUnits));
-    ImGui::SameLine();
   }
 }
 
-void draw_language(const PanelContext& context) {
-  ViewSettings* settings = context.settings;
-  ImGui::Separator();
-  draw_theme(context);
-  draw_units(context);
-  ImGui::Dummy({10.0f * context.scale, 0.0f});
-  ImGui::SameLine();
-  static const std::vector<std::pair<std::string, std::string>> kLanguages = [] {
-    std::vector<std::pair<std::string, std::string>> all;
-    for (const std::string& code : languages()) all.emplace_back(code, name_of_language(code));
-    return all;
-  }();
-  for (const auto& [code, name] : kLanguages) {
-    if (ImGui::RadioButton(name.c_str(), code == settings->language) && use_language(code)) {
-      settings->language = code;
-      context.commands->push(ReadAgainCommand{});
-    }
-    if (code != kLanguages.back().first) ImGui::SameLine();
+/// What each language calls itself; its code where the letters of the name are missing.
+std::vector<std::pair<std::string, std::string>> names_of_languages() {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string& code : languages()) {
+    const std::string name = name_of_language(code);
+    const bool is_readable = !has_east_asian(letters_in(name)) || east_asian_font();
+    all.emplace_back(code, is_readable ? name : code);
   }
+  return all;
+}
+
+void choose_language(const PanelContext& context, const std::string& code) {
+  if (!can_show(code)) {
+    context.state->notice = missing_letters_text(code);
+    return;
+  }
+  if (!use_language(code)) return;
+  context.settings->language = code;
+  context.state->notice.clear();
+  context.commands->push(ReadAgainCommand{});
+}
+
+void draw_language(const PanelContext& context) {
+  static const std::vector<std::pair<std::string, std::string>> kLanguages = names_of_languages();
+  const std::string spoken = language();
+  const auto shown = std::find_if(kLanguages.begin(), kLanguages.end(),
+                                  [&](const auto& entry) { return entry.first == spoken; });
+  ImGui::SetNextItemWidth(150.0f * context.scale);
+  const std::string label = fmt::format("{}###language", context.word(Text::kLanguage));
+  if (!ImGui::BeginCombo(label.c_str(),
+                         shown == kLanguages.end() ? spoken.c_str() : shown->second.c_str())) {
+    return;
+  }
+  for (const auto& [code, name] : kLanguages) {
+    if (ImGui::Selectable(name.c_str(), code == spoken)) choose_language(context, code);
+  }
+  ImGui::EndCombo();
+}
+
+void draw_text_size(const PanelContext& context) {
+  ViewSettings* settings = context.settings;
   ImGui::SetNextItemWidth(150.0f * context.scale);
   constexpr std::array kScales{0.85, 1.0, 1.25, 1.5, 2.0, 3.0};
   if (ImGui::BeginCombo(context.word(Text::kTextSize),
@@ -284,7 +311,11 @@ void draw_view_tab(const PanelContext& context) {
   draw_curve_choice(context);
   draw_section(context);
   draw_drawing(context);
+  ImGui::Separator();
+  draw_theme(context);
+  draw_units(context);
   draw_language(context);
+  draw_text_size(context);
 }
 
 ColorCommand color_command(const ViewSettings& settings, const PanelState& state) {

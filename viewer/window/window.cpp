@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "base/translate.h"
+#include "viewer/window/letters.h"
 #include "viewer/window/window_impl.h"
 
 namespace kerf {
@@ -36,7 +37,8 @@ std::string first_line(const Diagnostics& faults) {
 Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQueue* commands)
     : options_(options), mailbox_(*mailbox), commands_(*commands) {
   settings_ = load_settings(options.settings_file, &settings_faults_);
-  use_language(settings_.language);
+  const bool can_speak = can_show(settings_.language);
+  use_language(can_speak ? settings_.language : "en");
   if (!options.is_local) settings_.drawing.is_local = false;
   remembered_mode_ = settings_.drawing.draw_mode;
   settings_.drawing.draw_mode = options.draw_mode.value_or(remembered_mode_);
@@ -47,6 +49,9 @@ Window::Impl::Impl(const WindowOptions& options, SceneMailbox* mailbox, CommandQ
   // Where nothing is remembered they would come every time.
   state_.shows_first_keys = !settings_.knows_keys && !options.settings_file.empty();
   state_.notice = first_line(settings_faults_);
+  if (!can_speak && settings_faults_.empty()) {
+    state_.notice = missing_letters_text(settings_.language);
+  }
 }
 
 Window::Impl::~Impl() {

@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/translate.h"
 #include "viewer/window/desktop_theme.h"
 #include "viewer/window/window_impl.h"
 
@@ -262,11 +263,13 @@ bool Window::Impl::wants_light() {
 void Window::Impl::set_looks() {
   const float scale = display_scale_ * static_cast<float>(settings_.text_scale);
   const bool is_light = wants_light();
-  if (scale == scale_ && is_light == is_light_) return;
-  if (scale != scale_) {
+  const std::string spoken = language();
+  if (scale == scale_ && is_light == is_light_ && spoken == fonts_language_) return;
+  if (scale != scale_ || spoken != fonts_language_) {
     scale_ = scale;
+    fonts_language_ = spoken;
     // Letters are drawn for their size, not blown up.
-    fonts_ = load_fonts(scale_);
+    fonts_ = load_fonts(scale_, fonts_language_);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }

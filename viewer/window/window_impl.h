@@ -156,6 +156,7 @@ class Window::Impl {
   ShownValues shown_;
   PanelState state_;
   Fonts fonts_;
+  std::string fonts_language_;  // whose letters they have
   std::vector<ColorLegendEntry> legend_;
   OrbitCamera camera_;
   Projection projection_;

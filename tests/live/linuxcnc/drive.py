@@ -89,11 +89,9 @@ class Machine:
         command.wait_complete()
         command.auto(linuxcnc.AUTO_RUN, line)
         # Right after AUTO_RUN the status still says idle; a refused program stays idle and has left a message.
-        wait_until(
-            "the start of the program",
-            lambda: self.poll().interp_state != linuxcnc.INTERP_IDLE or self.errors,
-            5,
-        )
+        begins = lambda: self.poll().interp_state != linuxcnc.INTERP_IDLE or self.errors
+        if not wait_until("the start of the program", begins, 5):
+            self.errors.append("the program did not start: is this computer too busy?")
 
     def run(self, program, limit_s, line=0):
         """Seconds that the program took; None if it was cut off."""

@@ -573,5 +573,26 @@ TEST(CanSource, AKernelWithoutCanIsSaid) {
   EXPECT_EQ(source.next(sample, std::chrono::milliseconds(0)), PositionSource::Next::kEnd);
 }
 
+TEST(CanAssembler, TheLoadGoesAlong) {
+  CanMap map = three_axes();
+  CanSignal load;
+  load.id = 0x200;
+  load.bits = {0, 16, CanEndian::kLittle};
+  load.scale = 10;
+  load.max_age_ms = 100;
+  map.load = load;
+  map.load_unit = LoadUnit::kAmperes;
+  Bus bus(map);
+  EXPECT_EQ(bus.push(frame_of(load, 50)), Taken::kTaken);
+  for (std::size_t i = 0; i < 3; ++i) bus.axis(i, 1);
+  bus.assembler.flush();
+  const std::optional<AxisSample> sample = bus.next();
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->load, 50);
+  EXPECT_EQ(sample->load_unit, LoadUnit::kAmperes);
+  EXPECT_EQ(bus.push(frame_of(load, 200'000)), Taken::kUnfit);  // no spindle has that
+  EXPECT_NE(bus.assembler.unfit_text().find("load"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace kerf

@@ -127,6 +127,41 @@ TEST(CsvLog, ReadsTheShapesOfManyPrograms) {
   }
 }
 
+TEST(CsvLog, ReadsTheLoadOfTheSpindle) {
+  const TestFolder folder;
+  const ReadLog log =
+      read_log(log_at(folder.write("a.csv", "t,x,load_nm\n0,1,2.5\n1,1,\n2,1,-\n3,1,1e6\n")));
+  ASSERT_EQ(log.samples.size(), 3U);
+  EXPECT_EQ(log.samples[0].load, 2.5);
+  EXPECT_EQ(log.samples[0].load_unit, LoadUnit::kNewtonMetres);
+  EXPECT_EQ(log.samples[1].load, 2.5);
+  EXPECT_TRUE(std::isnan(log.samples[2].load));
+  EXPECT_EQ(log.status.errors, 1U);  // no spindle has 1e6 Nm
+}
+
+TEST(CsvLog, ReadsTheLoadFromTheColumnThatIsChosen) {
+  const TestFolder folder;
+  LogSettings settings;
+  settings.path = folder.write("a.csv", "t,x,Spindle Load,load_kw\n0,1,50,9\n");
+  settings.load = LogLoad{"spindle load", LoadUnit::kPercentOfPower, 0.1, 1};
+  const ReadLog log = read_log(settings);
+  ASSERT_EQ(log.samples.size(), 1U);
+  EXPECT_EQ(log.samples[0].load, 6);
+  EXPECT_EQ(log.samples[0].load_unit, LoadUnit::kPercentOfPower);
+  settings.load->column = "Spindel";
+  const ReadLog none = read_log(settings);
+  ASSERT_EQ(none.errors.size(), 1U);
+  EXPECT_EQ(
+      none.errors[0].message,
+      "source.map.load.pin: no column is called 'Spindel'; found: t, x, Spindle Load, load_kw");
+}
+
+TEST(CsvLog, TwoLoadsAreNotClear) {
+  const TestFolder folder;
+  const ReadLog log = read_log(log_at(folder.write("a.csv", "t,x,load_kw,load_nm\n0,1,50,9\n")));
+  EXPECT_FALSE(log.is_open);
+}
+
 TEST(CsvLog, ListsTheColumnsThatItDoesNotRead) {
   const TestFolder folder;
   const ReadLog log = read_as(folder,

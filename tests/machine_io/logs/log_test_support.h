@@ -11,6 +11,7 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "machine_io/logs/log_source.h"
@@ -46,6 +47,12 @@ class TestFolder {
 inline std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline LogSettings log_at(std::string path) {
+  LogSettings settings;
+  settings.path = std::move(path);
+  return settings;
 }
 
 /// A log read to its end.

@@ -480,5 +480,34 @@ TEST(RecordingFormat, TimesGoThereAndBack) {
   }
 }
 
+TEST(Recorder, KeepsTheLoadOfTheSpindle) {
+  const TestFolder folder;
+  RecordingHead head = head_of(0b1);
+  head.load = LoadUnit::kKilowatts;
+  auto recorder = Recorder::create(folder.file("a.csv"), head);
+  ASSERT_TRUE(recorder);
+  constexpr double kLoads[] = {1.25, std::numeric_limits<double>::quiet_NaN(), -0.5};
+  for (int i = 0; i < 3; ++i) {
+    AxisSample sample;
+    sample.host_ns = 1'772'357'400'000'000'000 + i;
+    sample.set(0, i);
+    sample.load = kLoads[i];
+    sample.load_unit = LoadUnit::kKilowatts;
+    recorder.value()->record(sample);
+  }
+  EXPECT_EQ(recorder.value()->finish().trouble, "");
+  EXPECT_NE(read_text(folder.file("a.csv")).find("spindle_rpm,load_kw\n"), std::string::npos);
+  const ReadLog log = read_log(log_at(folder.file("a.csv")));
+  ASSERT_EQ(log.samples.size(), 3U);
+  EXPECT_EQ(log.contents.load, LoadUnit::kKilowatts);
+  EXPECT_EQ(log.contents.recording->load, LoadUnit::kKilowatts);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(log.samples[i].load),
+              std::bit_cast<std::uint64_t>(kLoads[i]));
+    if (i == 1) continue;
+    EXPECT_EQ(log.samples[i].load_unit, LoadUnit::kKilowatts);
+  }
+}
+
 }  // namespace
 }  // namespace kerf

@@ -25,6 +25,7 @@ ServedState moving() {
   served.state.scan = 513;
   served.state.spindle_rpm = -2;
   served.state.tool_offset_z_mm = 1.5;
+  served.state.load = 12.34;
   return served;
 }
 
@@ -49,10 +50,11 @@ TEST(CanEncoder, Cia402PositionsLieAtByteTwoOfTpdo3) {
   EXPECT_EQ(frames[6].data[6], 1);
   EXPECT_EQ(frames[6].data[7], 2);
   EXPECT_EQ(frames[7].id, kCanSpindleId);
-  EXPECT_EQ(frames[7].size, 6u);
+  EXPECT_EQ(frames[7].size, 8u);
   EXPECT_EQ(frames[7].data[0], 0xfe);
   EXPECT_EQ(frames[7].data[1], 0xff);
   EXPECT_EQ(u32_at(frames[7], 2), 1500u);
+  EXPECT_EQ(frames[7].data[6] | frames[7].data[7] << 8, 1234);
 }
 
 TEST(CanEncoder, OdriveTellsTurnsAndTurnsPerSecond) {

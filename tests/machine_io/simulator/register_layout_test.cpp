@@ -22,6 +22,7 @@ SimulatedState some_state() {
   state.scan = 65535;
   state.spindle_rpm = -1200.4;
   state.tool_offset_z_mm = -12.5;
+  state.load = 23.456;
   return state;
 }
 
@@ -44,7 +45,9 @@ TEST(RegisterLayout, HoldsThousandthsAndFloats) {
   EXPECT_EQ(modbus_get_float_abcd(&registers[kFloatRegister + 2]), -70000.0015F);
   EXPECT_EQ(modbus_get_float_abcd(&registers[kFloatToolOffsetRegister]), -12.5F);
   EXPECT_EQ(modbus_get_float_abcd(&registers[kFloatSpindleRegister]), -1200.4F);
-  for (std::size_t i = 19; i < kFloatRegister; ++i) EXPECT_EQ(registers[i], 0) << i;
+  EXPECT_EQ(registers[kLoadRegister], 2346);
+  EXPECT_EQ(modbus_get_float_abcd(&registers[kFloatLoadRegister]), 23.456F);
+  for (std::size_t i = 20; i < kFloatRegister; ++i) EXPECT_EQ(registers[i], 0) << i;
 }
 
 TEST(RegisterLayout, HoldsWhatDoesNotFitAtTheEndOfItsType) {

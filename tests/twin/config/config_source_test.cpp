@@ -51,8 +51,7 @@ TEST(ConfigSource, KeysOfOtherTypes) {
   EXPECT_EQ(said_of("source:\n  type: hal\n  poll_hz: 5\n  dbc: a\n  map: {X: {}}\n"),
             "3:3: source.poll_hz: is a key of sources of type modbus; this one is hal\n"
             "4:3: source.dbc: is a key of sources of type can and log; this one is hal\n"
-            "5:3: source.map: is a key of sources of type modbus and can and log; this one is "
-            "hal\n");
+            "5:9: source.map.X: is read from LinuxCNC's own pin; only load is chosen here\n");
 }
 
 // ---- modbus
@@ -174,8 +173,8 @@ TEST(ConfigModbus, WhatDoesNotGoTogether) {
 TEST(ConfigModbus, ItemsOfTheMap) {
   EXPECT_EQ(said_of(kTcp + "  map:\n    X: {register: 0}\n    Q: {register: 0}\n"),
             "6:5: source.map.Q: unknown key (here may be: A, B, C, J0, J1, J2, J3, J4, J5, J6, J7, "
-            "J8, U, V, W, X, Y, Z, counter, counter_begun, line, spindle, tool, tool_offset_z, "
-            "trigger)\n");
+            "J8, U, V, W, X, Y, Z, counter, counter_begun, line, load, spindle, tool, "
+            "tool_offset_z, trigger)\n");
   EXPECT_EQ(said_of(kTcp + "  map:\n    x: {register: 0}\n"),
             "5:5: source.map.x: unknown key (did you mean X?)\n");
   EXPECT_EQ(said_of(kTcp + "  map:\n    X: {regster: 0}\n"),
@@ -395,6 +394,66 @@ TEST(ConfigHal, Faults) {
       said_of("source:\n  type: hal\n  coordinates: axes\n  frame: workpiece\n"),
       "3:16: source.coordinates: axes is not allowed; must be joints: that is what HAL has\n"
       "4:10: source.frame: workpiece is not allowed; must be machine: that is what HAL has\n");
+}
+
+// ---- the spindle's load
+
+TEST(ConfigLoad, ComesFromARegisterAFrameOrAPin) {
+  const auto modbus = settings_of<ModbusSettings>(
+      ReadText(kTcp + "  map:\n    X: {register: 0}\n    load: {register: 20, type: uint16, scale: "
+                      "0.1, unit: percent-torque}\n"));
+  ASSERT_TRUE(modbus.load);
+  EXPECT_EQ(modbus.load->address, 20);
+  EXPECT_EQ(modbus.load->scale, 0.1);
+  EXPECT_EQ(modbus.load_unit, LoadUnit::kPercentOfTorque);
+  // A length it is not, whatever the lengths are in.
+  const auto can = settings_of<CanSourceOptions>(
+      ReadText("source: {type: can, interface: can0, units: inch, map: {X: {id: 1}, load: {id: 2, "
+               "scale: 0.5, unit: kW}}}\n"));
+  ASSERT_TRUE(can.map.load);
+  EXPECT_EQ(can.map.load->scale, 0.5);
+  EXPECT_EQ(can.map.load_unit, LoadUnit::kKilowatts);
+  const auto hal = settings_of<HalSettings>(
+      ReadText("source: {type: hal, map: {load: {pin: vfd.amps, unit: A, scale: 2}}}\n"));
+  ASSERT_TRUE(hal.load);
+  EXPECT_EQ(hal.load->pin, "vfd.amps");
+  EXPECT_EQ(hal.load->unit, LoadUnit::kAmperes);
+  EXPECT_EQ(hal.load->scale, 2);
+  const auto log = settings_of<LogSettings>(ReadText(
+      "source: {type: log, file: a, map: {load: {pin: Spindle Load, unit: Nm, offset: -1}}}\n"));
+  ASSERT_TRUE(log.load);
+  EXPECT_FALSE(log.can_map);
+  EXPECT_EQ(log.load->column, "Spindle Load");
+  EXPECT_EQ(log.load->unit, LoadUnit::kNewtonMetres);
+  EXPECT_EQ(log.load->offset, -1);
+}
+
+TEST(ConfigLoad, IsPrintedAsItIsRead) {
+  for (const std::string& text :
+       {kTcp + "  map:\n    X: {register: 0}\n    load: {register: 20, unit: kW}\n",
+        std::string("source: {type: hal, map: {load: {pin: vfd.amps, unit: A, scale: 2}}}\n")}) {
+    const ReadText read(text);
+    ASSERT_TRUE(read.config) << read.said();
+    const std::string printed = effective_yaml(*read.config);
+    const ReadText again(printed);
+    ASSERT_TRUE(again.config) << again.said() << printed;
+    EXPECT_EQ(effective_yaml(*again.config), printed);
+    EXPECT_NE(printed.find("load: {"), std::string::npos) << printed;
+  }
+}
+
+TEST(ConfigLoad, Faults) {
+  EXPECT_EQ(
+      said_of(kTcp + "  map:\n    X: {register: 0}\n    load: {register: 20}\n"),
+      "6:5: source.map.load: unit is missing; must be one of percent, percent-torque, kW, Nm, "
+      "A (percent: of the rated power, as most drives tell it)\n");
+  EXPECT_EQ(said_of(kTcp + "  map:\n    X: {register: 0, unit: kW}\n"),
+            "5:22: source.map.X.unit: only load has this key\n");
+  EXPECT_EQ(said_of("source: {type: hal, map: {load: {unit: kw}}}\n"),
+            "1:40: source.map.load.unit: 'kw' is not allowed; must be one of percent, "
+            "percent-torque, kW, Nm, A (did you mean kW?)\n"
+            "1:27: source.map.load: pin is missing; must be the name of a HAL pin (as in "
+            "vfd.load-percentage)\n");
 }
 
 // ---- log

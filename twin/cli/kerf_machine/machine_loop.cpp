@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 
@@ -108,6 +109,7 @@ MachineLoopResult run_machine_loop(const MachineLoopOptions& options, MachinePla
     const std::uint16_t scan = state.scan;
     state = player.state();
     state.scan = static_cast<std::uint16_t>(scan + 1);
+    state.load = options.load.at(std::max(0.0, time_s) * options.speed, state.scan);
     const ServedState served = injector.serve(state, time_s);
     board.publish(served);
     if (can != nullptr) can->send(served, result.updates > 0 ? time_s - sent_s : 0);

@@ -9,6 +9,7 @@
 
 #include "machine_io/simulator/can_sender.h"
 #include "machine_io/simulator/fault.h"
+#include "machine_io/simulator/load_profile.h"
 #include "machine_io/simulator/state_board.h"
 #include "twin/cli/kerf_machine/machine_player.h"
 
@@ -22,6 +23,7 @@ struct MachineLoopOptions {
   std::function<bool()> has_reader;
   bool hold = false;  ///< go on at the end, until stopped
   std::vector<FaultRule> faults;
+  LoadProfile load;  ///< by the time of the program
 };
 
 struct MachineLoopResult {

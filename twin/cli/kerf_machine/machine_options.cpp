@@ -110,6 +110,14 @@ MachineRequest understand_machine(const WrittenOptions& options, Diagnostics& di
   understand_modbus(reader, request);
   understand_can(reader, request);
   understand_faults(reader, request);
+  if (const std::string load = reader.text("--load"); !load.empty()) {
+    Result<LoadProfile> profile = LoadProfile::parse(load);
+    if (profile) {
+      request.load = std::move(*profile);
+    } else {
+      reader.fault("--load", profile.error(), "--load 0:4.5,10:4.5,10.2:31");
+    }
+  }
   request.rate_hz = reader.number("--rate");
   request.speed = reader.number("--speed");
   request.start_delay_s = reader.number("--start-delay");

@@ -8,6 +8,7 @@
 #include "base/diagnostic.h"
 #include "machine_io/simulator/can_sender.h"
 #include "machine_io/simulator/fault.h"
+#include "machine_io/simulator/load_profile.h"
 #include "machine_io/simulator/modbus_server.h"
 #include "twin/cli/kerf_machine/machine_player.h"
 #include "twin/cli/program_options.h"
@@ -29,6 +30,7 @@ struct MachineRequest {
   bool repeat = false;
   bool hold = false;
   std::vector<FaultRule> faults;
+  LoadProfile load;
 
   /// Whether the fault may come.
   bool has_fault(FaultKind kind) const;

@@ -148,8 +148,8 @@ int run_machine(const MachineRequest& request) {
   MachinePlayer player(feed, request.frame);
   player.prepare(stop.get_token());
   Outlets out;
-  MachineLoopOptions options{request.rate_hz, request.speed, request.start_delay_s, {},
-                             request.hold,    request.faults};
+  MachineLoopOptions options{request.rate_hz, request.speed,  request.start_delay_s, {},
+                             request.hold,    request.faults, request.load};
   if (request.wait_for_reader) options.has_reader = [&out] { return out.asked() > 0; };
   publish_start(player, options, out.board);
   if (const std::string why = open_outlets(request, out); !why.empty()) return fail(why);

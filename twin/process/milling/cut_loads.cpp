@@ -71,6 +71,32 @@ void CutLoads::note(Trouble trouble, const Part& part, double value, const Value
 
 void CutLoads::take(const Part& part) {
   if (tool_ == nullptr || part.way.seconds <= 0) return;
+  const bool is_engaged = part.look.is_engaged();
+  asked_ = {part.start_s,
+            part.way.seconds,
+            tool_->number,
+            part.source,
+            part.rpm,
+            is_engaged,
+            !is_engaged,
+            {},
+            {}};
+  weigh(part);
+  if (hearer_) hearer_(asked_);
+}
+
+void CutLoads::take_unknown(double start_s, double seconds) {
+  if (!hearer_ || tool_ == nullptr) return;
+  CutLoadPart part;
+  part.start_s = start_s;
+  part.seconds = seconds;
+  part.tool = tool_->number;
+  part.is_engaged = true;
+  part.is_known = false;
+  hearer_(part);
+}
+
+void CutLoads::weigh(const Part& part) {
   feed_s_ += part.way.seconds;
   if (!part.look.is_engaged()) return take_air(part);
   close_air();
@@ -167,6 +193,9 @@ void CutLoads::add_forces(const Part& part, const ValueRange& force_n, const Val
   const auto add = [&](LoadSpread& spread, ValueRange& most, const ValueRange& range) {
     spread.add(range, part.way.seconds, part.source, most);
   };
+  asked_.is_known = true;
+  asked_.power_w = power_w;
+  asked_.torque_nm = torque_mean_nm;
   const ValueRange power_kw = power_w.times(1e-3);
   add(loads.force_n, loads.force_most_n, force_n);
   add(loads.torque_nm, loads.torque_most_nm, torque_nm);

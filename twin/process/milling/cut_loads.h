@@ -15,6 +15,7 @@
 #include "stock/cutter/cutter.h"
 #include "twin/findings/finding.h"
 #include "twin/job/tool_loads.h"
+#include "twin/process/cut_load_part.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/engagement.h"
 
@@ -40,6 +41,10 @@ class CutLoads {
     double most_mm_per_min = 0;  ///< the speed that its motion reaches
   };
   void take(const Part& part);
+  /// Of a part that nobody has measured.
+  void take_unknown(double start_s, double seconds);
+  /// Is told what each part asks of the spindle.
+  void hear_by(CutLoadHearer hearer) { hearer_ = std::move(hearer); }
   /// The program is over: what is wrong.
   void finish();
   void forget();
@@ -95,6 +100,7 @@ class CutLoads {
     int tool = 0;
   };
 
+  void weigh(const Part& part);
   void note(Trouble trouble, const Part& part, double value, const ValueRange& range,
             double extra = 0);
   void take_air(const Part& part);
@@ -113,6 +119,8 @@ class CutLoads {
   CuttingWish wish_;
   std::vector<Tool> tools_;
   Tool* tool_ = nullptr;
+  CutLoadHearer hearer_;
+  CutLoadPart asked_;  ///< by the present part
   double feed_s_ = 0, air_s_ = 0;
   AirWay air_;
   std::vector<AirWay> longest_air_;  ///< five at most, the longest first

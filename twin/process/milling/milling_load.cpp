@@ -58,12 +58,14 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
 void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flight) {
   if (!flight.feed || site_.holding || divided_.empty()) return;
   part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
-  part_mm_per_min_ = reached_mm_per_min(step);
+  // A machine that is watched has the feed that it has.
+  part_mm_per_min_ = site_.watched ? step.programmed_mm_per_min : reached_mm_per_min(step);
   const std::size_t told_before = load_parts_told_;
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
     if (near) engagement_->take_unmeasured(step.length_mm);
+    if (near) loads_.take_unknown(step.start_s, step.duration_s);
     engagement_->lift();
     return;
   }

@@ -102,9 +102,10 @@ void MillingStage::finish(bool whole) {
   for (const auto& [move, tool] : reversed_down_) {
     if (!taps_.contains(move.motion)) report_reversed(move, tool);
   }
-  loads_.finish();
+  // Feeds between two samples tremble: of a watched machine only means count (LoadWatch).
+  if (!site_.watched) loads_.finish();
   for (ToolUse& use : uses_) {
-    use.loads = loads_.loads_of(use.number, use.shape);
+    if (!site_.watched) use.loads = loads_.loads_of(use.number, use.shape);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }
@@ -177,6 +178,7 @@ bool MillingStage::mount_for(const Motion& m) {
   if (mounted_->cutter) mount_parts(m);
   if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
+    loads_.hear_by(site_.hears_loads);
     engagement_->hear_by([this](const EngagementLog::Part& part) {
       ++load_parts_told_;
       load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,
