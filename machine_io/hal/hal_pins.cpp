@@ -78,6 +78,9 @@ struct HalPins::StatusPins {
   hal_bit_t* alive;
   hal_u32_t* heartbeat;
   hal_bit_t* beat;
+  hal_bit_t* program_ok;
+  hal_s32_t* findings;
+  hal_float_t* time_left;
 };
 
 struct HalPins::Wanted {
@@ -141,6 +144,9 @@ bool HalPins::create_status_pins(std::string& trouble) {
       hal_pin_bit_new("kerf.alive", HAL_OUT, &pins->alive, component_),
       hal_pin_u32_new("kerf.heartbeat", HAL_OUT, &pins->heartbeat, component_),
       hal_pin_bit_new("kerf.beat", HAL_OUT, &pins->beat, component_),
+      hal_pin_bit_new("kerf.program-ok", HAL_OUT, &pins->program_ok, component_),
+      hal_pin_s32_new("kerf.findings", HAL_OUT, &pins->findings, component_),
+      hal_pin_float_new("kerf.time-left", HAL_OUT, &pins->time_left, component_),
   };
   for (const int result : results) {
     if (result == 0) continue;
@@ -259,6 +265,9 @@ void HalPins::put(const HalStatusRecord& status) {
   *status_pins_->off_path_mm = status.off_path_mm;
   *status_pins_->off_path = status.off_path != 0;
   *status_pins_->stale = status.stale != 0;
+  *status_pins_->program_ok = status.program_ok != 0 && status.stale == 0;
+  *status_pins_->findings = status.findings;
+  *status_pins_->time_left = status.time_left_s;
 }
 
 void HalPins::show(const HalStatusRecord& status) {
@@ -278,6 +287,7 @@ void HalPins::show_silence() {
   if (taken()) return;
   *status_pins_->stale = true;
   *status_pins_->alive = false;
+  *status_pins_->program_ok = false;  // what nobody vouches for is no leave to start
 }
 
 }  // namespace kerf

@@ -55,6 +55,9 @@ HalStatusRecord record_of(const HalStatus& status) {
   record.collision_seconds = status.collision_seconds;
   record.off_path_mm = status.off_path_mm;
   record.finding_line = status.finding_line;
+  record.time_left_s = status.time_left_s;
+  record.findings = status.findings;
+  record.program_ok = status.program_ok ? 1 : 0;
   record.collision_ahead = status.collision_ahead ? 1 : 0;
   record.off_path = status.off_path ? 1 : 0;
   record.stale = status.stale ? 1 : 0;
@@ -143,20 +146,22 @@ std::vector<std::string> validate(const HalSettings& settings) {
   return faults;
 }
 
-std::string find_kerf_hal(const std::string& given) {
-  if (!given.empty()) {
-    if (given.find('/') == std::string::npos) return find_in_path(given);
-    return is_executable(given) ? given : std::string();
-  }
+std::string find_hal_program(const std::string& name) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   if (!error) {
-    for (const char* place : {"kerf-hal", "../lib/kerf/kerf-hal"}) {
+    for (const std::string& place : {name, "../lib/kerf/" + name}) {
       std::string path = (self.parent_path() / place).string();
       if (is_executable(path)) return path;
     }
   }
-  return find_in_path("kerf-hal");
+  return find_in_path(name);
+}
+
+std::string find_kerf_hal(const std::string& given) {
+  if (given.empty()) return find_hal_program("kerf-hal");
+  if (given.find('/') == std::string::npos) return find_in_path(given);
+  return is_executable(given) ? given : std::string();
 }
 
 /// The source with the child it has at the moment, if any.

@@ -39,6 +39,10 @@ struct HalSettings {
 /// All faults, one text each: "source.rate_hz: 0 found, 1 to 1000 allowed (readings per second)".
 std::vector<std::string> validate(const HalSettings& settings);
 
+/// A program of LinuxCNC's side that belongs to kerf: beside this executable, in ../lib/kerf beside
+/// it, or in PATH; empty if there is none.
+std::string find_hal_program(const std::string& name);
+
 /// The executable that `given` (HalSettings::kerf_hal_path) means; empty if there is none.
 std::string find_kerf_hal(const std::string& given);
 

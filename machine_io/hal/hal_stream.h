@@ -19,7 +19,7 @@ namespace kerf {
 static_assert(std::endian::native == std::endian::little);
 
 /// Raised with every change of a record. Ends of different versions refuse each other.
-inline constexpr std::uint16_t kHalStreamVersion = 2;
+inline constexpr std::uint16_t kHalStreamVersion = 3;
 inline constexpr std::uint32_t kHalSampleMagic = 0x534C484B;  ///< "KHLS" in the stream
 inline constexpr std::uint32_t kHalStatusMagic = 0x504C484B;  ///< "KHLP" in the stream
 
@@ -85,6 +85,10 @@ struct HalStatus {
   bool collision_ahead = false;
   bool off_path = false;
   bool stale = false;  ///< kerf itself has no current positions, or cannot tell
+  /// The program that LinuxCNC has loaded, as it is on the disk, was run through, without errors.
+  bool program_ok = false;
+  std::int32_t findings = -1;  ///< errors and warnings of it; -1: not known (yet)
+  double time_left_s = -1.0;   ///< that it takes from where it is, >= 0; -1: not known
 };
 
 /// HalStatus on its way, to kerf-hal's stdin.
@@ -95,12 +99,15 @@ struct HalStatusRecord {
   double collision_seconds = kNoCollisionSeconds;
   double off_path_mm = 0.0;
   std::int32_t finding_line = 0;
-  std::uint8_t collision_ahead = 0;  ///< these three: 0 or 1
+  std::uint8_t collision_ahead = 0;  ///< these four: 0 or 1
   std::uint8_t off_path = 0;
   std::uint8_t stale = 0;
-  std::uint8_t unused = 0;  ///< 0
+  std::uint8_t program_ok = 0;
+  std::int32_t findings = -1;
+  std::uint32_t unused = 0;  ///< 0
+  double time_left_s = -1.0;
 };
-static_assert(sizeof(HalStatusRecord) == 32 && std::is_trivially_copyable_v<HalStatusRecord>);
+static_assert(sizeof(HalStatusRecord) == 48 && std::is_trivially_copyable_v<HalStatusRecord>);
 
 /// Why a record's head is not one of this version; nothing if it is.
 template <class Record>

@@ -79,6 +79,12 @@ constexpr const char* kMachineExample =
     "Example:\n"
     "  kerf machine part.ngc --modbus-tcp 127.0.0.1:1502 --frame workpiece\n";
 
+constexpr const char* kSetupExample =
+    "Examples:\n"
+    "  kerf setup mill.ini\n"
+    "  kerf setup mill.ini --write\n"
+    "  kerf setup mill.ini --undo --write\n";
+
 constexpr const char* kToolsExample =
     "Examples:\n"
     "  kerf tools\n"
@@ -114,6 +120,8 @@ const char* examples_of(Command command) {
       return kConfigExample;
     case kMachine:
       return kMachineExample;
+    case kSetup:
+      return kSetupExample;
     case kModels:
       return "Example:\n  kerf models\n";
     case kSources:

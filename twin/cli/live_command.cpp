@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -16,18 +17,22 @@
 #include "base/exit_code.h"
 #include "base/translate.h"
 #include "machine_io/recorder.h"
+#include "twin/cli/borrowed_source.h"
 #include "twin/cli/console.h"
 #include "twin/cli/finding_shots.h"
 #include "twin/cli/live_console.h"
 #include "twin/cli/live_window.h"
 #include "twin/cli/page_output.h"
 #include "twin/cli/scheduling.h"
+#include "twin/cli/screen_program.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
 #include "twin/config/make_source.h"
 
 namespace kerf {
 namespace {
+
+using LiveClock = std::chrono::steady_clock;
 
 /// Bits of the positions that the source can have; all of them where that is seen later.
 std::uint16_t positions_of(const ConfigSource& source) {
@@ -68,10 +73,24 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
 /// The console, and the kerf.* pins of the LinuxCNC that is watched.
 class HalObserver final : public LiveObserver {
  public:
-  HalObserver(LiveObserver& console, HalSource& hal) : console_(console), hal_(hal) {}
+  /// `loaded`: null where the program that LinuxCNC has loaded is not followed. `program`: that of
+  /// this session; empty: none.
+  HalObserver(LiveObserver& console, HalSource& hal, const ScreenProgram* loaded,
+              std::string program, bool is_quiet)
+      : console_(console),
+        hal_(hal),
+        loaded_(loaded),
+        program_(std::move(program)),
+        is_quiet_(is_quiet) {}
+  /// Who gets the findings of the dry run, and a line about it.
+  void tell_to(LiveObserver* all, LiveView* view) {
+    all_ = all;
+    view_ = view;
+  }
   void on_status(const LiveStatus& status) override {
     console_.on_status(status);
     HalStatus pins;
+    show_loaded(status, pins);
     pins.collision_ahead = status.collision_in_s >= 0;
     if (pins.collision_ahead) {
       pins.collision_seconds = status.collision_in_s;
@@ -91,15 +110,56 @@ class HalObserver final : public LiveObserver {
   void on_run(const LiveRun& run) override { console_.on_run(run); }
 
  private:
+  void show_loaded(const LiveStatus& status, HalStatus& pins) {
+    if (status.remaining_s >= 0) pins.time_left_s = status.remaining_s;
+    if (loaded_ == nullptr) return;
+    const ScreenProgramState state = loaded_->state();
+    if (!state.result || state.program.empty()) return;
+    const DryRunResult& result = *state.result;
+    const bool is_followed = state.program == program_;
+    if (state.number != told_ && (is_followed || program_.empty())) {
+      told_ = state.number;
+      tell(result);
+    }
+    if (!is_followed || !result.is_done) return;
+    pins.program_ok = result.is_good() && status.state == LiveState::kLive;
+    pins.findings = result.errors + result.warnings;
+    if (pins.time_left_s < 0) pins.time_left_s = result.duration_s;
+  }
+  void tell(const DryRunResult& result) {
+    const std::string line = line_of(result);
+    if (!is_quiet_) {
+      print_text(stderr, trf("kerf: {}\n", line));
+      flush_console();
+    }
+    if (view_ != nullptr) view_->tell(line);
+    for (const Finding& finding : result.findings) all_->on_finding(finding, {});
+  }
+
   LiveObserver& console_;
   HalSource& hal_;
+  const ScreenProgram* loaded_;
+  const std::string program_;
+  const bool is_quiet_;
+  LiveObserver* all_ = this;
+  LiveView* view_ = nullptr;
+  std::uint32_t told_ = 0;  ///< ScreenProgramState::number
+};
+
+/// What goes on from one session to the next.
+struct Surroundings {
+  LiveWindow* window = nullptr;           ///< null: one session, without a window
+  HalSource* hal = nullptr;               ///< of a LinuxCNC: where the pins are
+  const ScreenProgram* loaded = nullptr;  ///< null: not followed
+  bool is_first = true;                   ///< of the sessions
+  bool has_begun = false;                 ///< out: it could be watched
 };
 
 /// The event stream: "-" is standard output, a file appears at once and grows.
 struct EventFile {
-  explicit EventFile(const std::string& path) {
+  EventFile(const std::string& path, bool is_new) {
     if (path.empty()) return;
-    file = path == "-" ? stdout : std::fopen(path.c_str(), "we");
+    file = path == "-" ? stdout : std::fopen(path.c_str(), is_new ? "we" : "ae");
     if (!file) error = errno;
   }
   ~EventFile() {
@@ -145,12 +205,15 @@ void close_sources(Recorder* recorder, const PositionSource* log, const std::str
 }
 
 int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::stop_source& stop,
-          LiveWindow* window) {
+          Surroundings& around) {
+  around.has_begun = false;
+  LiveWindow* const window = around.window;
+  const bool is_shown = window != nullptr && window->is_shown();
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   PositionSource* const raw_source = source.get();
   std::unique_ptr<Recorder> recorder;
-  EventFile events(request.events);
+  EventFile events(request.events, std::exchange(around.is_first, false));
   if (events.error != 0) {
     diagnostics.push_back(
         fault(fmt::format("--events: {}: {}", request.events, std::strerror(events.error))));
@@ -178,13 +241,18 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   print_diagnostics(diagnostics, request.quiet);
   if (!session) return exit_code(outcome, Report{}, diagnostics);
+  around.has_begun = true;
   diagnostics.clear();
   CpuBudget budget(request.cpu_limit_percent);
   session->set_rest([&] { return budget.rest(); });
   LiveConsole console(request.quiet, events.file);
   if (recorder) console.watch(*recorder);
   std::optional<HalObserver> pins;
-  if (auto* hal = dynamic_cast<HalSource*>(raw_source)) pins.emplace(console, *hal);
+  if (around.hal != nullptr) {
+    pins.emplace(console, *around.hal, around.loaded,
+                 request.options.program ? request.options.program->path : std::string(),
+                 request.quiet);
+  }
   LiveObserver* observer = pins ? static_cast<LiveObserver*>(&*pins) : &console;
   std::optional<FindingShots> shots;
   if (!request.finding_png.empty()) {
@@ -194,13 +262,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   std::optional<LiveView> view;
   std::optional<std::jthread> inputs;
-  if (window || design || request.outputs.wants_page()) session->keep_cut_ids();
-  if (window) {
+  if (is_shown || design || request.outputs.wants_page()) session->keep_cut_ids();
+  if (is_shown) {
     view.emplace(window->view_options(request, *session, stop), *observer, window->mailbox(),
                  window->commands());
     observer = &*view;
     inputs.emplace(window->watch_inputs(request, *view, stop));
   }
+  if (pins) pins->tell_to(observer, view ? &*view : nullptr);
   session->set_observer(observer);
   outcome = session->run(stop.get_token(), diagnostics);
   // What was cut of a log whose round is over is nothing to be reported.
@@ -230,7 +299,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
                trf("kerf: note: {} more findings; --json FILE lists them\n", console.unprinted()));
   }
   if (!request.quiet) {
-    const bool stdout_taken = request.outputs.uses_stdout() || request.events == "-";
+    const bool tells_id = request.tab && !request.tab->parent;
+    const bool stdout_taken = request.outputs.uses_stdout() || request.events == "-" || tells_id;
     print_lengths(stdout_taken ? stderr : stdout, summary_text(session->report()));
   }
   flush_console();
@@ -242,24 +312,108 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   return exit_code(outcome, session->report(), diagnostics);
 }
 
-/// Round after round, as the window asks for them.
+/// Until the next round begins, or somebody stops: the pins say that nothing is vouched for.
+int wait_for_program(SharedSource& shared, const Surroundings& around, double for_s, bool is_quiet,
+                     std::stop_source& stop) {
+  const LiveClock::time_point begun = LiveClock::now();
+  std::uint32_t told = 0;
+  const std::string waiting = tr("waiting for a program: LinuxCNC has loaded none");
+  const auto tell = [&](const std::string& line) {
+    if (!is_quiet) print_text(stderr, trf("kerf: {}\n", line));
+    flush_console();
+    SceneUpdate update;
+    auto moment = std::make_shared<Moment>();
+    moment->notice = line;
+    update.moment = std::move(moment);
+    around.window->mailbox().publish(std::move(update));
+  };
+  if (around.loaded->state().program.empty()) tell(waiting);
+  while (!stop.stop_requested()) {
+    const double passed_s = std::chrono::duration<double>(LiveClock::now() - begun).count();
+    if (for_s > 0 && passed_s > for_s) break;
+    AxisSample sample;
+    BorrowedSource(shared).next(sample, std::chrono::milliseconds(100));
+    HalStatus pins;
+    pins.stale = true;
+    around.hal->show(pins);
+    const ScreenProgramState state = around.loaded->state();
+    if (state.result && std::exchange(told, state.number) != state.number) {
+      tell(line_of(*state.result));
+    }
+    for (const ViewerCommand& command : around.window->commands().take()) {
+      if (std::holds_alternative<CloseCommand>(command) && !around.window->lost) {
+        stop.request_stop();
+      }
+    }
+  }
+  return kExitGood;
+}
+
+/// Round after round, as the window asks for them, or LinuxCNC loads programs.
 int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
                  std::stop_source& stop, LiveWindow& window) {
+  const LiveClock::time_point begun = LiveClock::now();
+  const double for_s = request.options.for_s;
+  // Its pins stay, whatever is linked to them.
+  std::optional<SharedSource> shared;
+  std::optional<ScreenProgram> loaded;
+  Surroundings around;
+  around.window = &window;
+  around.hal = dynamic_cast<HalSource*>(source.get());
+  if (around.hal != nullptr) {
+    shared.emplace(std::move(source));
+    source = std::make_unique<BorrowedSource>(*shared);
+  }
+  if (shared && !request.kerf_status.empty()) {
+    loaded.emplace(
+        request.kerf_status, request.nml_file, window.options(),
+        [&shared] { return shared->is_running.load(); },
+        [&window](const std::string& program) { return window.follow(program); });
+    around.loaded = &*loaded;
+  }
   while (true) {
     int code = kExitGood;
     {
       std::stop_source round;
       const std::stop_callback ends(stop.get_token(), [&round] { round.request_stop(); });
-      code = watch(request, std::move(source), round, &window);
+      window.begin_round(round);
+      // Without a program and a blank there is nothing to be watched yet.
+      const bool has_work = !loaded || request.options.program || request.options.blank;
+      if (has_work) code = watch(request, std::move(source), round, around);
+      // Nor is there along a program that cannot be followed, until another one comes.
+      if (loaded && !(has_work && around.has_begun)) {
+        code = wait_for_program(*shared, around, for_s, request.quiet, round);
+      }
     }
     std::optional<LiveRequest> next = window.take_next();
     if (!next || stop.stop_requested()) return code;
     Diagnostics diagnostics;
     request = std::move(*next);
-    source = make_source(request.config, diagnostics);
+    if (for_s > 0) {
+      const double left_s = for_s - std::chrono::duration<double>(LiveClock::now() - begun).count();
+      if (left_s <= 0) return code;
+      request.options.for_s = left_s;
+    }
+    source = shared ? std::make_unique<BorrowedSource>(*shared)
+                    : make_source(request.config, diagnostics);
     print_diagnostics(diagnostics, request.quiet);
     if (!source) return kExitFailure;
   }
+}
+
+/// Without a window: in rounds where LinuxCNC's programs are followed.
+int watch_unseen(const Arguments& arguments, LiveRequest& request,
+                 std::unique_ptr<PositionSource> source, std::stop_source& stop) {
+  if (request.kerf_status.empty()) {
+    HalSource* const hal = dynamic_cast<HalSource*>(source.get());
+    Surroundings around;
+    around.hal = hal;
+    return watch(request, std::move(source), stop, around);
+  }
+  SceneMailbox mailbox;
+  CommandQueue commands;
+  LiveWindow rounds(mailbox, commands, arguments, false);
+  return watch_rounds(request, std::move(source), stop, rounds);
 }
 
 /// With a window, if one is wanted and there is a display; without one a machine is watched and a
@@ -267,7 +421,9 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
 int watch_in_window(const Arguments& arguments, LiveRequest& request,
                     std::unique_ptr<PositionSource> source, std::stop_source& stop) {
   const bool may_try = has_display() || request.needs_window;
-  if (!request.window || !may_try) return watch(request, std::move(source), stop, nullptr);
+  if (!request.window || !may_try) {
+    return watch_unseen(arguments, request, std::move(source), stop);
+  }
   SceneMailbox mailbox(Window::wake);
   CommandQueue commands;
   LiveWindow window(mailbox, commands, arguments);
@@ -281,6 +437,7 @@ int watch_in_window(const Arguments& arguments, LiveRequest& request,
   WindowOptions options;
   options.draw_mode = request.draw;
   if (request.units != LengthUnit::kMm) options.units = request.units;
+  options.embed_in = request.embed_in;
   const Result<int> code = work_beside_window(
       options, mailbox, commands, stop,
       [&] { return watch_rounds(request, std::move(source), stop, window); },
@@ -296,18 +453,10 @@ int watch_in_window(const Arguments& arguments, LiveRequest& request,
     return kExitFailure;
   }
   go_on(code.error());
-  return watch(request, std::move(source), stop, nullptr);
+  return watch_unseen(arguments, request, std::move(source), stop);
 }
 
-}  // namespace
-
-int live_command(const Arguments& arguments) {
-  Diagnostics diagnostics;
-  LiveRequest request = understand_live(arguments, diagnostics);
-  if (has_error(diagnostics)) {
-    print_diagnostics(diagnostics, false);
-    return kExitUsage;
-  }
+int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics diagnostics) {
   show_lengths_in(request.units);
   check_output_places(request.outputs, diagnostics);
   make_finding_folder(request.finding_png, diagnostics);
@@ -332,6 +481,38 @@ int live_command(const Arguments& arguments) {
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
   if (!source) return none_named ? kExitUsage : kExitFailure;
   return watch_in_window(arguments, request, std::move(source), stop);
+}
+
+/// In a tab of LinuxCNC's screen.
+int watch_in_tab(const Arguments& arguments, LiveRequest& request, Diagnostics diagnostics) {
+  Result<ScreenTab> tab = ScreenTab::open(request.tab->parent);
+  if (!tab) {
+    Diagnostic d =
+        fault(fmt::format("{}: {}", request.tab->parent ? "--embed" : "--xid", tab.error()));
+    d.hint = tr("--no-view watches without a window");
+    print_diagnostics({d}, false);
+    return kExitFailure;
+  }
+  request.embed_in = tab->id();
+  if (!request.tab->parent) {
+    kerf::print(stdout, "{}\n", tab->id());
+    flush_console();
+  }
+  return guard_tab(std::move(*tab),
+                   [&] { return watch_as_asked(arguments, request, std::move(diagnostics)); });
+}
+
+}  // namespace
+
+int live_command(const Arguments& arguments) {
+  Diagnostics diagnostics;
+  LiveRequest request = understand_live(arguments, diagnostics);
+  if (has_error(diagnostics)) {
+    print_diagnostics(diagnostics, false);
+    return kExitUsage;
+  }
+  if (request.tab) return watch_in_tab(arguments, request, std::move(diagnostics));
+  return watch_as_asked(arguments, request, std::move(diagnostics));
 }
 
 ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueue& commands,

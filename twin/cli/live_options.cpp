@@ -10,7 +10,9 @@
 
 #include "base/translate.h"
 #include "base/units.h"
+#include "interp_bridge/ini_file.h"
 #include "interp_bridge/parameter_file.h"
+#include "machine_io/hal/loaded_file.h"
 #include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
 #include "twin/cli/run_options.h"
@@ -177,6 +179,62 @@ void understand_outlets(OptionReader& reader, LiveRequest& request) {
   request.draw = understand_draw(reader);
 }
 
+/// Beside a LinuxCNC, where nothing else is said: the program that it has loaded.
+void understand_loaded(OptionReader& reader, LiveRequest& request) {
+  if (!std::holds_alternative<HalSettings>(request.config.source)) return;
+  if (request.options.program || reader.is_yes("--ignore-loaded")) return;
+  // A recording is of one watch.
+  if (!request.record.empty()) {
+    Diagnostic d;
+    d.severity = Severity::kNote;
+    d.message = tr("beside --record the program that LinuxCNC has loaded is not followed");
+    reader.diagnostics().push_back(std::move(d));
+    return;
+  }
+  request.kerf_status = find_kerf_status();
+  if (request.kerf_status.empty()) {
+    Diagnostic d;
+    d.severity = Severity::kNote;
+    d.message = tr(
+        "the program that LinuxCNC has loaded is not followed: kerf-status is not installed (it is "
+        "built where linuxcnc-uspace-dev is)");
+    d.hint = tr("--program names it");
+    reader.diagnostics().push_back(std::move(d));
+    return;
+  }
+  if (request.ini.empty()) return;
+  Diagnostics told;  // of the INI, by who has read it before
+  Result<IniFile> ini = IniFile::read(request.ini, told);
+  if (!ini) return;
+  if (const IniEntry* const entry = ini->find("EMC", "NML_FILE")) request.nml_file = entry->value;
+}
+
+/// The window in a tab of LinuxCNC's screen.
+void understand_tab(OptionReader& reader, LiveRequest& request) {
+  const std::string id = reader.text("--embed");
+  const bool tells_id = reader.is_yes("--xid");
+  if (id.empty() && !tells_id) return;
+  const char* const option = tells_id ? "--xid" : "--embed";
+  if (!id.empty() && tells_id) {
+    reader.fault("--xid", tr("not beside --embed: the window is either put into a tab, or taken"));
+    return;
+  }
+  if (!request.window) {
+    reader.fault(option, tr("needs a window, and --no-view (view.window) wants none"));
+  }
+  if (tells_id && (request.outputs.uses_stdout() || request.events == "-")) {
+    reader.fault(option, tr("needs standard output for itself: write to files"));
+  }
+  request.tab.emplace();
+  if (tells_id) return;
+  request.tab->parent = window_id_from(id);
+  if (!request.tab->parent) {
+    reader.fault("--embed", trf("'{}' is no X11 window's id", id),
+                 tr("a number as 48234517 or 0x2e00015; in an INI {XID}, for which the screen puts "
+                    "it"));
+  }
+}
+
 }  // namespace
 
 LiveRequest understand_live(const Arguments& a, Diagnostics& diagnostics) {
@@ -233,6 +291,10 @@ LiveRequest understand_live(const Arguments& a, Diagnostics& diagnostics) {
   // A log that is run as fast as it goes is there for its report.
   const bool is_shown = reader.text("--no-view") == "yes" && !std::isinf(options.speed);
   request.window = a.in_window || is_shown;
+  if (reader.command() == kShadow) {
+    understand_loaded(reader, request);
+    understand_tab(reader, request);
+  }
   check_output_arguments(request.outputs, diagnostics);
   return request;
 }

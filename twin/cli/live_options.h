@@ -2,6 +2,7 @@
 // configuration to checked values.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "twin/cli/compare_option.h"
 #include "twin/cli/outputs.h"
 #include "twin/cli/program_options.h"
+#include "twin/cli/tab_guard.h"
 #include "twin/cli/torch_options.h"
 #include "twin/cli/work_options.h"
 #include "twin/config/live_config.h"
@@ -37,7 +39,12 @@ struct LiveRequest {
   bool quiet = false;
   bool window = false;           ///< wanted; there may be no display
   std::optional<DrawMode> draw;  ///< in the window; none: as it remembers it
-  bool needs_window = false;     ///< without one there is nothing to be done
+  /// kerf-status, which says what LinuxCNC has loaded: that is followed. Empty: it is not.
+  std::string kerf_status;
+  std::string nml_file;                   ///< of the INI; empty: LinuxCNC's own
+  std::optional<TabWish> tab;             ///< the window is to be in another program's
+  std::optional<std::uint32_t> embed_in;  ///< the tab, once it is there
+  bool needs_window = false;              ///< without one there is nothing to be done
 };
 
 /// All faults at once, as diagnostics. `arguments`: of kShadow or kReplay.

@@ -70,10 +70,12 @@ std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request,
   return drawn_machine(request.config.machine.drawn, request.ini, room, diagnostics);
 }
 
-LiveWindow::LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments)
+LiveWindow::LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments,
+                       bool is_shown)
     : mailbox_(mailbox),
       commands_(commands),
       command_(arguments.command),
+      is_shown_(is_shown),
       arguments_(std::move(arguments)) {}
 
 void LiveWindow::serve(std::function<void()> on_start) { on_start_ = std::move(on_start); }
@@ -154,10 +156,32 @@ void LiveWindow::open(const std::string& path, std::stop_source stop) {
   begin_next(std::move(arguments), std::move(stop));
 }
 
+void LiveWindow::begin_round(std::stop_source stop) {
+  const std::lock_guard lock(mutex_);
+  round_ = std::move(stop);
+}
+
+bool LiveWindow::follow(const std::string& program) {
+  Arguments arguments;
+  std::optional<std::stop_source> round;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!round_ || is_over_) return false;
+    arguments = arguments_;
+    round = round_;
+  }
+  arguments.options.set("--program", program);
+  // One that cannot be followed is told once, and the watch goes on as it is.
+  begin_next(std::move(arguments), std::move(*round));
+  return true;
+}
+
 bool LiveWindow::begin_next(Arguments arguments, std::stop_source stop) {
   Diagnostics diagnostics;
   LiveRequest request = understand_live(arguments, diagnostics);
-  if (!has_error(diagnostics)) make_source(request.config, diagnostics);
+  // That of a LinuxCNC goes on.
+  const bool keeps_source = std::holds_alternative<HalSettings>(request.config.source);
+  if (!has_error(diagnostics) && !keeps_source) make_source(request.config, diagnostics);
   const std::lock_guard lock(mutex_);
   if (has_error(diagnostics)) {
     print_diagnostics(diagnostics, request.quiet);

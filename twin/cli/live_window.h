@@ -27,7 +27,10 @@ std::shared_ptr<const MachineModel> machine_beside(const LiveRequest& request,
 /// log is opened. Declared before the sessions, so that it ends after them.
 class LiveWindow {
  public:
-  LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments);
+  /// `is_shown`: there is a window; else there are rounds, and nobody sees them.
+  LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments arguments,
+             bool is_shown = true);
+  bool is_shown() const { return is_shown_; }
 
   /// `on_start` is called before anything of a session is shown; what the user opens then ends the
   /// round and is opened().
@@ -41,11 +44,19 @@ class LiveWindow {
   /// round, those of a machine are told.
   std::jthread watch_inputs(const LiveRequest& request, LiveView& view, std::stop_source stop);
 
+  /// The next round is along this program (empty: along none), from now on; false: not now.
+  bool follow(const std::string& program);
+  /// By which the round that begins can be ended for the sake of the next one.
+  void begin_round(std::stop_source stop);
+
   /// This round is over for the sake of the next one.
   bool is_over() const { return is_over_; }
   /// The next round, if there is one.
   std::optional<LiveRequest> take_next();
   const std::optional<std::string>& opened() const { return opened_; }
+
+  /// As they were written, for the first round.
+  const WrittenOptions& options() const { return arguments_.options; }
 
   SceneMailbox& mailbox() { return mailbox_; }
   CommandQueue& commands() { return commands_; }
@@ -62,11 +73,13 @@ class LiveWindow {
   SceneMailbox& mailbox_;
   CommandQueue& commands_;
   const Command command_;
+  const bool is_shown_;
   std::function<void()> on_start_;
   std::mutex mutex_;  // of what follows
   Arguments arguments_;
   std::optional<LiveRequest> next_;
   std::optional<std::string> opened_;
+  std::optional<std::stop_source> round_;
   std::atomic<bool> is_over_{false};
 };
 

@@ -30,6 +30,7 @@
 #include "twin/cli/machine_command.h"
 #include "twin/cli/optimize_command.h"
 #include "twin/cli/run_command.h"
+#include "twin/cli/setup_command.h"
 #include "twin/cli/tools_command.h"
 #include "twin/cli/version.h"
 #include "twin/cli/view_command.h"
@@ -141,6 +142,7 @@ constexpr std::array kCalls{
     CommandCall{kConfig, config_command},
     // Found and started by machine_command(), before this is asked.
     CommandCall{kMachine, [](const Arguments&) -> int { return kExitUsage; }},
+    CommandCall{kSetup, setup_command},
     CommandCall{kModels, [](const Arguments&) { return print_list(model_list()); }},
     CommandCall{kSources, [](const Arguments&) { return print_list(tr(kSourceList)); }},
     CommandCall{kTools, tools_command},

@@ -22,6 +22,7 @@ constexpr std::array kCommands{
     CommandRow{kCanon, "canon", tr_noop("print what a program commands as JSON lines")},
     CommandRow{kConfig, "config", tr_noop("check or print a configuration, or list every key")},
     CommandRow{kMachine, "machine", tr_noop("a simulated machine that serves its positions")},
+    CommandRow{kSetup, "setup", tr_noop("a tab with the machine twin in LinuxCNC's screen")},
     CommandRow{kModels, "models", tr_noop("list the workpiece models")},
     CommandRow{kSources, "sources", tr_noop("list where positions may come from")},
     CommandRow{kTools, "tools",

@@ -54,6 +54,7 @@ enum Command : std::uint16_t {
   kBatch = 2048,
   kJob = 4096,
   kOptimize = 8192,
+  kSetup = 16384,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
 /// Those that take workpieces of every kind, and those that take what is milled.

@@ -19,6 +19,13 @@ constexpr std::array kFollowSettings{
             .help = tr_noop("the program that the machine runs: its path is cut, what it does "
                             "beside it is found, and what it would hit is told beforehand"),
             .value_name = "FILE"},
+    Setting{.option = "--ignore-loaded",
+            .commands = kShadow,
+            .type = T::kYesNo,
+            .fallback = "no",
+            .help = tr_noop("beside LinuxCNC without --program: do not follow the program that it "
+                            "has loaded"),
+            .flag = "yes"},
     Setting{.option = "--next-program",
             .commands = kBesideMachine,
             .type = T::kFile,

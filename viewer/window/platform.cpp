@@ -101,6 +101,18 @@ void survive_destroyed_window(GLFWwindow* window) {
   });
 }
 
+/// GLFW 3.4 takes Wayland where there is both; 3.3 knows X11 alone, and no such hint.
+void ask_for_x11() {
+  constexpr int kPlatform = 0x00050003, kPlatformX11 = 0x00060004;  // of GLFW 3.4's header
+  int major = 0, minor = 0, revision = 0;
+  const auto get_version =
+      reinterpret_cast<void (*)(int*, int*, int*)>(dlsym(RTLD_DEFAULT, "glfwGetVersion"));
+  const auto set_hint = reinterpret_cast<void (*)(int, int)>(dlsym(RTLD_DEFAULT, "glfwInitHint"));
+  if (get_version == nullptr || set_hint == nullptr) return;
+  get_version(&major, &minor, &revision);
+  if (minor >= 4) set_hint(kPlatform, kPlatformX11);
+}
+
 /// Version and renderer of the OpenGL that a window gets without asking for one.
 std::string found_gl() {
   glfwDefaultWindowHints();
@@ -185,13 +197,14 @@ Platform::~Platform() {
   if (!display_is_lost) glfwTerminate();
 }
 
-Done Platform::start() {
+Done Platform::start(bool needs_x11) {
   if (const Done opened = open_glfw(); !opened) {
     return Error{trf("no window: it needs GLFW, Debian's package libglfw3 ({}); {}", opened.error(),
                      tr(kWithout))};
   }
   complaint().clear();
   glfwSetErrorCallback([](int, const char* text) { complaint() = text; });
+  if (needs_x11) ask_for_x11();
   if (glfwInit() != GLFW_TRUE) {
     const std::string display = display_name();
     if (display.empty()) {
@@ -208,7 +221,10 @@ Done Platform::start() {
   return std::monostate{};
 }
 
-Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const char* title) {
+void Platform::survive_destroyed(GLFWwindow* window) { survive_destroyed_window(window); }
+
+Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const char* title,
+                                          bool is_inside) {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -218,7 +234,13 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
   glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the scene has framebuffers of its own
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, is_inside ? GLFW_FALSE : GLFW_TRUE);
+  if (is_inside) {
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_DECORATED, GLFW_FALSE);
+    glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
+    glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
+  }
   GLFWwindow* window = glfwCreateWindow(width_px, height_px, title, nullptr, nullptr);
   if (window == nullptr) {
     const std::string reason = complaint();
@@ -232,7 +254,7 @@ Result<GLFWwindow*> Platform::open_window(int width_px, int height_px, const cha
     return Error{trf("no window: OpenGL 3.3 is needed; the display {} has {}.{}; {}; {}",
                      display_name(), found / 10, found % 10, tr(kSoftware), tr(kWithout))};
   }
-  fit_on_screens(window);
+  if (!is_inside) fit_on_screens(window);
   glfwSwapInterval(0);  // the window counts its frames itself, and must not wait for a hidden one
   find_parts(window);
   survive_destroyed_window(window);

@@ -22,11 +22,14 @@ class Platform {
   ~Platform();
 
   /// Error: "no window: cannot open display ':7' (...); pictures need no display: --png FILE".
-  Done start();
+  /// `needs_x11`: no other window system will do.
+  Done start(bool needs_x11 = false);
   /// A window with a current OpenGL 3.3 core context, at most as large as the largest screen; sizes
   /// are for a display of ordinary resolution, and grow with that of the screen. Error: the OpenGL
   /// that is there, and the one that is needed.
-  Result<GLFWwindow*> open_window(int width_px, int height_px, const char* title);
+  /// `is_inside`: it is to be put into another program's window, and is not shown before.
+  Result<GLFWwindow*> open_window(int width_px, int height_px, const char* title,
+                                  bool is_inside = false);
 
   /// show() of a few rectangles is worth it: this OpenGL is a software renderer, for which sending
   /// a whole window is a good part of a frame, and it can send less.
@@ -49,6 +52,10 @@ class Platform {
   /// Neither of the two. What GLFW said of the window's size just before is to be believed only
   /// then: it asks the X server, and does not look whether an answer came.
   static bool is_there(GLFWwindow* window) { return !is_gone(window) && !is_lost(); }
+
+  /// What failed for want of a window does not end the program: to be said again after GLFW was
+  /// asked for what makes it set Xlib's own way of failing.
+  static void survive_destroyed(GLFWwindow* window);
 
   /// Ends the waiting for events. From any thread, at any time.
   static void wake();

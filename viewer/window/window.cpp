@@ -82,7 +82,8 @@ void Window::Impl::remember_settings() {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);
   // A window that was shrunk to nothing is not worth remembering.
-  if (Platform::is_there(window_) && width >= kLeastSize_px && height >= kLeastSize_px) {
+  if (!embedding_ && Platform::is_there(window_) && width >= kLeastSize_px &&
+      height >= kLeastSize_px) {
     const auto unscaled = [this](int px) {
       const auto size = static_cast<int>(std::lround(static_cast<float>(px) / display_scale_));
       return std::clamp(size, kLeastSize_px, kMostSize_px);
@@ -105,10 +106,18 @@ void Window::Impl::remember_settings() {
 Done Window::Impl::open() {
   const int width = options_.width_px > 0 ? options_.width_px : settings_.width_px;
   const int height = options_.height_px > 0 ? options_.height_px : settings_.height_px;
-  if (Done done = platform_.start(); !done) return done;
-  Result<GLFWwindow*> window = platform_.open_window(width, height, "kerf");
+  const bool is_inside = options_.embed_in.has_value();
+  if (Done done = platform_.start(is_inside); !done) return done;
+  Result<GLFWwindow*> window = platform_.open_window(width, height, "kerf", is_inside);
   if (!window) return Error{window.error()};
   window_ = *window;
+  if (is_inside) {
+    Result<Embedding> embedding = Embedding::into(*options_.embed_in, window_);
+    if (!embedding) return Error{embedding.error()};
+    embedding_ = std::move(*embedding);
+    // The keys are those of the program around it.
+    state_.shows_first_keys = false;
+  }
   Result<SceneRenderer> renderer = SceneRenderer::create(Platform::wake);
   if (!renderer) return Error{renderer.error()};
   renderer_ = std::move(*renderer);

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,9 @@ struct WindowOptions {
   SectionKind section = SectionKind::kNone;  ///< That the workpiece is first seen in.
   float scale = 0.0f;          ///< Of letters and panels, 1 to 4; 0: that of the display.
   std::string picture_folder;  ///< Where screenshots go; empty: the current folder.
+  /// An X11 window of another program, over all of which this one lies; it takes no keys then, and
+  /// no focus, and is over when that one goes. `width_px` and `height_px` do not count.
+  std::optional<std::uint32_t> embed_in;
 };
 
 /// All calls from the main thread, which is the one that GLFW wants; wake() from any. One window at

@@ -94,6 +94,14 @@ void Window::Impl::wait(double longest_s) {
   }
 }
 
+void Window::Impl::follow_embedding() {
+  if (!embedding_ || Platform::is_lost()) return;
+  // GLFW may have set Xlib's own way of failing again.
+  Platform::survive_destroyed(window_);
+  embedding_->follow();
+  if (std::exchange(is_hidden_, embedding_->is_covered()) && !is_hidden_) uncovered();
+}
+
 /// While it goes as fast as it can be cut, and nobody touches the window.
 bool Window::Impl::waits_with_news() const {
   return shown_.moment->is_behind && !film_ && frames_to_draw_ == 0 && Clock::now() < next_news_;
@@ -206,6 +214,7 @@ void Window::Impl::rest() {
 Result<bool> Window::Impl::frame(double longest_wait_s) {
   if (was_closed_) return false;
   wait(longest_wait_s);
+  follow_embedding();
   if (Done done = platform_.check(); !done) return give_up(done.error());
   if (glfwWindowShouldClose(window_) || Platform::is_gone(window_)) return end();
   find_reasons_to_draw();

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "viewer/film_writer.h"
+#include "viewer/window/embedding.h"
 #include "viewer/window/panel_change.h"
 #include "viewer/window/panel_layer.h"
 #include "viewer/window/panels.h"
@@ -81,6 +82,8 @@ class Window::Impl {
   /// The window has lost its pixels.
   void uncovered();
   void wait(double longest_s);
+  /// Of a window inside another one: its size, and whether it can be seen.
+  void follow_embedding();
   double longest_sleep_s() const;
   /// Nothing is drawn: gives back memory, once.
   void rest();
@@ -146,6 +149,7 @@ class Window::Impl {
 
   Platform platform_;
   GLFWwindow* window_ = nullptr;
+  std::optional<Embedding> embedding_;
   bool has_panels_ = false;
   std::optional<SceneRenderer> renderer_;
   std::optional<PanelLayer> layer_;

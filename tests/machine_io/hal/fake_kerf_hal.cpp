@@ -108,7 +108,7 @@ int faulty_records(std::string_view mode) {
     put(&record, 100);
     return 0;
   }
-  if (mode == "version") record.version = 2;
+  if (mode == "version") record.version = kHalStreamVersion + 1;
   if (mode == "length") record.bytes = 280;
   if (mode == "garbage") record.magic = 0x5A5A5A5A;
   if (mode == "back") record = record_number(1);
