@@ -83,7 +83,7 @@ std::vector<PathVertex> random_path(unsigned seed, std::size_t count) {
     if (share() < 0.05) step = -step;
     step += 0.02 * Vec3(share() - 0.5, share() - 0.5, share() - 0.5);
     if (share() > 0.03) at += step;
-    path.push_back({glm::vec3(at), kind});
+    path.push_back(PathVertex{glm::vec3(at), kind});
   }
   return path;
 }
@@ -132,7 +132,7 @@ TEST(ThinnedPathOf, AStraightLineHasChordsOfTheLengthAllowed) {
   constexpr double kEdge_mm = 0.25;
   std::vector<PathVertex> path;
   for (int i = 0; i <= 1000; ++i) {
-    path.push_back({{static_cast<float>(kEdge_mm * i), 3.0f, -1.0f}});
+    path.push_back(PathVertex{{static_cast<float>(kEdge_mm * i), 3.0f, -1.0f}});
   }
   EXPECT_EQ(thinned_path(path, kEdge_mm * 1000 / kLongestChord),
             (std::vector<std::uint32_t>{0, 1000}));
@@ -146,7 +146,8 @@ TEST(ThinnedPathOf, ACircleHasChordsOfTheSagittaAllowed) {
   std::vector<PathVertex> path;
   for (int i = 0; i <= 20000; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 20000.0;
-    path.push_back({glm::vec3(kRadius_mm * std::cos(angle), kRadius_mm * std::sin(angle), 0.0)});
+    path.push_back(
+        PathVertex{glm::vec3(kRadius_mm * std::cos(angle), kRadius_mm * std::sin(angle), 0.0)});
   }
   // A chord over an angle a leaves the circle by r (1 - cos(a / 2)).
   const double chords = std::numbers::pi / std::acos(1.0 - kTolerance_mm / kRadius_mm);
@@ -157,8 +158,8 @@ TEST(ThinnedPathOf, ACircleHasChordsOfTheSagittaAllowed) {
 
 TEST(ThinnedPathOf, AWayThereAndBackKeepsItsTurningPoint) {
   std::vector<PathVertex> path;
-  for (int i = 0; i <= 100; ++i) path.push_back({{static_cast<float>(i), 0.0f, 0.0f}});
-  for (int i = 99; i >= 0; --i) path.push_back({{static_cast<float>(i), 0.0f, 0.0f}});
+  for (int i = 0; i <= 100; ++i) path.push_back(PathVertex{{static_cast<float>(i), 0.0f, 0.0f}});
+  for (int i = 99; i >= 0; --i) path.push_back(PathVertex{{static_cast<float>(i), 0.0f, 0.0f}});
   EXPECT_EQ(thinned_path(path, 0.5), (std::vector<std::uint32_t>{0, 100, 200}));
 }
 

@@ -20,8 +20,8 @@ std::vector<PathVertex> waves(std::size_t count) {
     const double x = row % 2 == 0 ? along : 100.0 - along;
     const double y = 4.0 * static_cast<double>(row) + std::sin(x / 3.0);
     const bool is_first = i % kRow == 0;
-    path.push_back(
-        {glm::vec3(x, y, std::cos(x / 5.0)), is_first ? PathKind::kTraverse : PathKind::kFeed});
+    path.push_back(PathVertex{glm::vec3(x, y, std::cos(x / 5.0)),
+                              is_first ? PathKind::kTraverse : PathKind::kFeed});
   }
   return path;
 }
@@ -101,7 +101,8 @@ TEST_F(SceneRendererTest, AThinnedPathIsWhereTheWholeOneIs) {
 TEST_F(SceneRendererTest, OfAThinnedPathThePastEndsAtTheVertex) {
   std::vector<PathVertex> path;
   for (std::size_t i = 0; i <= 3 * kPathChunkSegments; ++i) {
-    path.push_back({{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
+    path.push_back(
+        PathVertex{{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
   }
   SceneRenderer scene = renderer();
   scene.apply(path_update(path_chunks(path)));
@@ -137,7 +138,8 @@ TEST_F(SceneRendererTest, OfAThinnedPathThePastEndsAtTheVertex) {
 TEST_F(SceneRendererTest, OfATailTheOlderSegmentsArePalerAndTheRestIsNotThere) {
   std::vector<PathVertex> path;
   for (std::size_t i = 0; i <= 3 * kPathChunkSegments; ++i) {
-    path.push_back({{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
+    path.push_back(
+        PathVertex{{100.0f * static_cast<float>(i) / (3 * kPathChunkSegments), 50.0f, 0.0f}});
   }
   SceneRenderer scene = renderer();
   scene.apply(path_update(path_chunks(path)));
@@ -178,7 +180,7 @@ double covered_px(const Picture& ground, const Picture& picture, int full) {
 TEST_F(SceneRendererTest, LinesAreAsWideAsTheDisplayAsks) {
   std::vector<PathVertex> path;
   for (int i = 0; i <= 50; ++i) {
-    path.push_back({{2.0f * static_cast<float>(i), 50.0f, 0.0f}, PathKind::kFeed});
+    path.push_back(PathVertex{{2.0f * static_cast<float>(i), 50.0f, 0.0f}, PathKind::kFeed});
   }
   camera_.look_from(StandardView::kTop);
   camera_.set_perspective(false);
@@ -221,7 +223,8 @@ TEST_F(SceneRendererTest, LinesAreAsWideAsTheDisplayAsks) {
 
 /// With lines through the eye, and behind it.
 TEST_F(SceneRendererTest, WideLinesEndBeforeTheEye) {
-  std::vector<PathVertex> path{{{50, -4000, 0}, PathKind::kFeed}, {{50, 4000, 0}, PathKind::kFeed}};
+  std::vector<PathVertex> path{PathVertex{{50, -4000, 0}, PathKind::kFeed},
+                               PathVertex{{50, 4000, 0}, PathKind::kFeed}};
   SceneRenderer scene = renderer(), empty = renderer();
   empty.apply(path_update({}));
   scene.apply(path_update(path_chunks(path)));
@@ -304,7 +307,8 @@ TEST_F(SceneRendererTest, OfALongPathThatPassesPartByPartTheSamePixelsAsAnew) {
   std::vector<PathVertex> path;
   for (int i = 0; i < 6000; ++i) {
     const auto along = static_cast<float>(i % 100), row = static_cast<float>(i / 100);
-    path.push_back({{i / 100 % 2 == 0 ? along : 99 - along, 1.2f * row, 5}, PathKind::kFeed});
+    path.push_back(
+        PathVertex{{i / 100 % 2 == 0 ? along : 99 - along, 1.2f * row, 5}, PathKind::kFeed});
   }
   first.path = path_chunks(path);
   scene.apply(first);
@@ -341,7 +345,7 @@ TEST_F(SceneRendererTest, OfAPathThatGrowsAndIsReplacedTheSamePixelsAsAnew) {
     std::vector<PathVertex> path;
     for (std::size_t i = 0; i < vertices; ++i) {
       const auto row = static_cast<float>(i / 100), along = static_cast<float>(i % 100);
-      path.push_back({{along, row, height_mm}, PathKind::kFeed});
+      path.push_back(PathVertex{{along, row, height_mm}, PathKind::kFeed});
     }
     return path_chunks(path);
   };
@@ -380,8 +384,8 @@ TEST_F(SceneRendererTest, TenMillionPathVerticesAreThinnedOut) {
   update.setup = std::make_shared<const SceneSetup>(setup);
   std::vector<PathVertex> path(kVertices);
   for (std::size_t i = 0; i < kVertices; ++i) {
-    path[i] = {{static_cast<float>(i % 1000) * 0.1f, static_cast<float>(i) * 1e-5f, 0.0f},
-               PathKind::kFeed};
+    path[i] = PathVertex{{static_cast<float>(i % 1000) * 0.1f, static_cast<float>(i) * 1e-5f, 0.0f},
+                         PathKind::kFeed};
   }
   update.path = path_chunks(path);
   path.clear();

@@ -180,10 +180,9 @@ TEST_F(SceneRendererTest, EveryObjectCanBeHidden) {
   update.moment = std::make_shared<const Moment>(moment);
   update.machine = box_machine({{{-40, -40, -60}, {0, 0, 20}}});
   update.fixtures = box_machine({{{160, 140, 0}, {190, 160, 20}}});
-  std::vector<PathVertex> path{{{0, 0, 5}, PathKind::kFeed},
-                               {{50, 0, 5}, PathKind::kFeed},
-                               {{50, 50, 5}, PathKind::kTraverse},
-                               {{90, 20, 5}, PathKind::kPlanned}};
+  std::vector<PathVertex> path{
+      PathVertex{{0, 0, 5}, PathKind::kFeed}, PathVertex{{50, 0, 5}, PathKind::kFeed},
+      PathVertex{{50, 50, 5}, PathKind::kTraverse}, PathVertex{{90, 20, 5}, PathKind::kPlanned}};
   update.path = path_chunks(path);
   scene.apply(update);
   const Projection projection = view_of(scene);

@@ -174,7 +174,8 @@ TEST_F(SceneRendererTest, ASectionCutsNeitherPathNorTool) {
   SceneRenderer scene = renderer();
   SceneUpdate update = update_of(patch, kBlock);
   update.tool_shape = test_tool(3.0f);
-  update.path = path_chunks({{{0, 5, 3}, PathKind::kFeed}, {{40, 5, 3}, PathKind::kFeed}});
+  update.path = path_chunks(
+      {PathVertex{{0, 5, 3}, PathKind::kFeed}, PathVertex{{40, 5, 3}, PathKind::kFeed}});
   Moment moment;
   moment.tool_pose = ToolPose{Vec3(20, 5, 3)};
   update.moment = std::make_shared<const Moment>(moment);
@@ -203,7 +204,7 @@ MeshPatch squares(const std::vector<std::uint32_t>& moves) {
     const auto first = static_cast<std::uint32_t>(patch.vertices.size());
     for (const glm::vec3& p : {glm::vec3(x, 0, 0), glm::vec3(x + 10, 0, 0),
                                glm::vec3(x + 10, 10, 0), glm::vec3(x, 10, 0)}) {
-      patch.vertices.push_back({p, pack_normal({0, 0, 1})});
+      patch.vertices.push_back(PathVertex{p, pack_normal({0, 0, 1})});
       patch.cut_by.push_back(moves[k]);
     }
     for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
@@ -274,10 +275,9 @@ TEST_F(SurfaceColorsTest, AreThoseOfTheMoves) {
 
 /// Two feeds of moves 0 and 1 above six squares that move 0 has cut, and a traverse.
 TEST_F(SurfaceColorsTest, AreThoseOfThePathWhereThatIsWanted) {
-  const std::vector<PathVertex> path{{{0, 5, 1}, PathKind::kTraverse, 0},
-                                     {{30, 5, 1}, PathKind::kFeed, 0},
-                                     {{60, 5, 1}, PathKind::kFeed, 1},
-                                     {{60, 25, 1}, PathKind::kTraverse, 1}};
+  const std::vector<PathVertex> path{
+      PathVertex{{0, 5, 1}, PathKind::kTraverse, 0}, PathVertex{{30, 5, 1}, PathKind::kFeed, 0},
+      PathVertex{{60, 5, 1}, PathKind::kFeed, 1}, PathVertex{{60, 25, 1}, PathKind::kTraverse, 1}};
   SceneRenderer scene = renderer();
   SceneUpdate update = update_of(squares({2, 2, 2, 2, 2, 2}), {Vec3(0, 0, -5), Vec3(60, 30, 1)});
   update.path = path_chunks(path);
@@ -330,10 +330,10 @@ TEST_F(SurfaceColorsTest, AreThoseOfThePathWhereThatIsWanted) {
 
 /// A straight path of many moves would be drawn as one line.
 TEST_F(SurfaceColorsTest, OfAStraightPathNoMoveIsLeftOut) {
-  std::vector<PathVertex> path{{{0, 5, 1}, PathKind::kTraverse, 0}};
+  std::vector<PathVertex> path{PathVertex{{0, 5, 1}, PathKind::kTraverse, 0}};
   for (std::uint32_t i = 1; i <= 2 * kPathChunkSegments; ++i) {
     const float x = 60.0f * static_cast<float>(i) / (2 * kPathChunkSegments);
-    path.push_back({{x, 5, 1}, PathKind::kFeed, i / 512 % 2});
+    path.push_back(PathVertex{{x, 5, 1}, PathKind::kFeed, i / 512 % 2});
   }
   SceneRenderer scene = renderer();
   SceneUpdate update = update_of(squares({2, 2, 2, 2, 2, 2}), {Vec3(0, 0, -5), Vec3(60, 30, 1)});
@@ -388,7 +388,7 @@ TEST_F(SurfaceColorsTest, AWallHasTheColorOfWhatLiesBelow) {
   MeshPatch patch;
   for (const glm::vec3& p :
        {glm::vec3(0, 0, 0), glm::vec3(0, 0, -10), glm::vec3(20, 0, -10), glm::vec3(20, 0, 0)}) {
-    patch.vertices.push_back({p, pack_normal({0, -1, 0})});
+    patch.vertices.push_back(PathVertex{p, pack_normal({0, -1, 0})});
     patch.cut_by.push_back(p.z < 0 ? 1 : MeshPatch::kNotCut);
   }
   for (int turn = 0; turn < 3; ++turn) {

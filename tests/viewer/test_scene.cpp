@@ -61,8 +61,9 @@ std::shared_ptr<const MeshPatch> TestWorkpiece::patch(int tile_x, int tile_y) {
     for (int x = x0; x <= x1; ++x) {
       const glm::vec3 normal(height(x - 1, y) - height(x + 1, y),
                              height(x, y - 1) - height(x, y + 1), 2.0f);
-      made->vertices.push_back({{static_cast<float>(x), static_cast<float>(y), height(x, y)},
-                                pack_normal(glm::normalize(normal))});
+      made->vertices.push_back(
+          PathVertex{{static_cast<float>(x), static_cast<float>(y), height(x, y)},
+                     pack_normal(glm::normalize(normal))});
     }
   }
   const auto row = static_cast<std::uint32_t>(x1 - x0 + 1);
@@ -117,15 +118,15 @@ std::shared_ptr<const ToolShape> test_tool(float radius_mm) {
 }
 
 std::vector<PathVertex> test_path(int cells_x, int cells_y) {
-  std::vector<PathVertex> path{{{0.0f, 0.0f, 30.0f}, PathKind::kTraverse},
-                               {{20.0f, 20.0f, 30.0f}, PathKind::kTraverse}};
+  std::vector<PathVertex> path{PathVertex{{0.0f, 0.0f, 30.0f}, PathKind::kTraverse},
+                               PathVertex{{20.0f, 20.0f, 30.0f}, PathKind::kTraverse}};
   float low = 20.0f;
   const auto high_x = static_cast<float>(cells_x), high_y = static_cast<float>(cells_y);
   while (2 * low < std::min(high_x, high_y)) {
     for (const glm::vec3& p : {glm::vec3(low, low, -3), glm::vec3(high_x - low, low, -3),
                                glm::vec3(high_x - low, high_y - low, -3),
                                glm::vec3(low, high_y - low, -3), glm::vec3(low, low + 12, -3)}) {
-      path.push_back({p, PathKind::kFeed});
+      path.push_back(PathVertex{p, PathKind::kFeed});
     }
     low += 12.0f;
   }

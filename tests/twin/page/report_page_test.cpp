@@ -248,7 +248,9 @@ TEST(ReportPage, WithoutTeethAndEngagementThereIsNoSectionOfThem) {
 }
 
 TEST(ReportPage, LoadsInInchesKeepTheirFigures) {
-  const std::string page = report_page(report_with_loads(), nullptr, {.units = LengthUnit::kInch});
+  PageOptions inches;
+  inches.units = LengthUnit::kInch;
+  const std::string page = report_page(report_with_loads(), nullptr, inches);
   const std::vector<std::string> chip = row_of(page, "<td>Chip thickness</td>");
   ASSERT_EQ(chip.size(), 6u);
   EXPECT_TRUE(chip[3].ends_with(" in")) << chip[3];

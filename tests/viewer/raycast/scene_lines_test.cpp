@@ -30,7 +30,8 @@ class SceneLinesTest : public testing::Test {
   /// A path of feeds that are past.
   static SceneLines path(const std::vector<glm::vec3>& points) {
     auto chunk = std::make_shared<PathChunk>();
-    for (const glm::vec3& point : points) chunk->vertices.push_back({point, PathKind::kFeed});
+    for (const glm::vec3& point : points)
+      chunk->vertices.push_back(PathVertex{point, PathKind::kFeed});
     SceneLines lines;
     lines.add(std::move(chunk));
     return lines;

@@ -123,8 +123,8 @@ TEST_F(CutLoadsTest, ListenersHearTheSameOfEachPart) {
   EXPECT_NEAR(load.of(LoadKind::kForce).high, wanted.force_n.high, 1e-6);
   EXPECT_NEAR(load.of(LoadKind::kTorque).nominal, wanted.torque_mean_nm.nominal, 1e-9);
   EXPECT_NEAR(load.of(LoadKind::kPower).high, wanted.power_w.high / 1000, 1e-9);
-  EXPECT_NEAR(load.of(LoadKind::kBend).nominal, loads_->loads_of(1)->bend_most_mm.nominal, 1e-12);
-  EXPECT_NEAR(load.of(LoadKind::kBend).high, loads_->loads_of(1)->bend_most_mm.high, 1e-12);
+  EXPECT_NEAR(load.of(LoadKind::kBend).nominal, loads_of(1)->bend_most_mm.nominal, 1e-12);
+  EXPECT_NEAR(load.of(LoadKind::kBend).high, loads_of(1)->bend_most_mm.high, 1e-12);
 }
 
 TEST_F(CutLoadsTest, WithoutTeethListenersHearOfTheAngleAlone) {
