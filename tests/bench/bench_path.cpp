@@ -52,7 +52,7 @@ PathVertex vertex_at(std::size_t i, std::size_t count) {
   const double along = static_cast<double>(i % kRow) / static_cast<double>(kRow);
   const double x = kSide_mm * (row % 2 == 0 ? along : 1 - along);
   const double y = kSide_mm * static_cast<double>(row) / rows;
-  return {glm::vec3(x, y, -6 + 3 * std::sin(x / 9) * std::cos(y / 7)), PathKind::kFeed};
+  return PathVertex{glm::vec3(x, y, -6 + 3 * std::sin(x / 9) * std::cos(y / 7)), PathKind::kFeed};
 }
 
 std::shared_ptr<const PathChunk> chunk_of(std::size_t index, std::size_t count) {

@@ -204,7 +204,7 @@ MeshPatch squares(const std::vector<std::uint32_t>& moves) {
     const auto first = static_cast<std::uint32_t>(patch.vertices.size());
     for (const glm::vec3& p : {glm::vec3(x, 0, 0), glm::vec3(x + 10, 0, 0),
                                glm::vec3(x + 10, 10, 0), glm::vec3(x, 10, 0)}) {
-      patch.vertices.push_back(PathVertex{p, pack_normal({0, 0, 1})});
+      patch.vertices.push_back({p, pack_normal({0, 0, 1})});
       patch.cut_by.push_back(moves[k]);
     }
     for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) {
@@ -388,7 +388,7 @@ TEST_F(SurfaceColorsTest, AWallHasTheColorOfWhatLiesBelow) {
   MeshPatch patch;
   for (const glm::vec3& p :
        {glm::vec3(0, 0, 0), glm::vec3(0, 0, -10), glm::vec3(20, 0, -10), glm::vec3(20, 0, 0)}) {
-    patch.vertices.push_back(PathVertex{p, pack_normal({0, -1, 0})});
+    patch.vertices.push_back({p, pack_normal({0, -1, 0})});
     patch.cut_by.push_back(p.z < 0 ? 1 : MeshPatch::kNotCut);
   }
   for (int turn = 0; turn < 3; ++turn) {

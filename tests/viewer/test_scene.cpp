@@ -61,9 +61,8 @@ std::shared_ptr<const MeshPatch> TestWorkpiece::patch(int tile_x, int tile_y) {
     for (int x = x0; x <= x1; ++x) {
       const glm::vec3 normal(height(x - 1, y) - height(x + 1, y),
                              height(x, y - 1) - height(x, y + 1), 2.0f);
-      made->vertices.push_back(
-          PathVertex{{static_cast<float>(x), static_cast<float>(y), height(x, y)},
-                     pack_normal(glm::normalize(normal))});
+      made->vertices.push_back({{static_cast<float>(x), static_cast<float>(y), height(x, y)},
+                                pack_normal(glm::normalize(normal))});
     }
   }
   const auto row = static_cast<std::uint32_t>(x1 - x0 + 1);

@@ -57,7 +57,7 @@ TEST_P(ScreensLiveTest, TheProgramIsDryRunAndFollowedAndACrashIsMended) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Screens, ScreensLiveTest, testing::Values("axis", "gmoccapy", "qtdragon"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& screen) { return std::string(screen.param); });
 
 }  // namespace
 }  // namespace kerf

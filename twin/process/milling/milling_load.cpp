@@ -21,6 +21,8 @@ constexpr std::size_t kPartsTaken = 4096;
 
 /// Round a corner the planner goes as fast as the faster of its two moves.
 double reached_mm_per_min(const TimedStep& step) {
+  // Of a program that is played only the F word is kept.
+  if (step.peak_mm_per_min <= 0) return step.programmed_mm_per_min;
   return step.programmed_mm_per_min > 0 ? std::min(step.peak_mm_per_min, step.programmed_mm_per_min)
                                         : step.peak_mm_per_min;
 }
