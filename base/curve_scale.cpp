@@ -1,6 +1,7 @@
 #include "base/curve_scale.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <vector>
@@ -23,8 +24,9 @@ double usual(std::span<const float> values) {
   std::copy_if(values.begin(), values.end(), std::back_inserter(present),
                [](float value) { return value > 0.0f; });
   if (present.empty()) return 0.0;
+  // Of less than a hundred columns all.
   const auto at =
-      static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(present.size() - 1));
+      static_cast<std::ptrdiff_t>(std::ceil(kUsualShare * static_cast<double>(present.size())) - 1);
   std::nth_element(present.begin(), present.begin() + at, present.end());
   return static_cast<double>(present[static_cast<std::size_t>(at)]);
 }

@@ -97,9 +97,9 @@ std::size_t characters(const std::string& utf8) {
 }
 
 constexpr const char* kLongOption = R"((?:^|[\s,\[`(])(--[a-z][a-z0-9-]+))";
-const char* const kCommands[] = {"run",    "view",  "shadow",  "replay",  "canon",
-                                 "config", "tools", "models",  "sources", "diff",
-                                 "batch",  "job",   "optimize"};
+const char* const kCommands[] = {"run",   "view",   "shadow", "replay",  "canon",
+                                 "setup", "config", "tools",  "models",  "sources",
+                                 "diff",  "batch",  "job",    "optimize"};
 
 Words options_of(const std::string& command) {
   const CommandResult help = run_kerf(command + " --help");
@@ -130,6 +130,7 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
       read_file(kRoot / "scripts/format_check") + read_file(kRoot / "tests/truth/run_truth") +
       read_file(kRoot / "check") + read_file(kRoot / "examples/ci/kerf.yml") +
       read_file(kRoot / "examples/ci/pre-commit") + read_file(kRoot / "scripts/make_packages") +
+      read_file(kRoot / "scripts/update_translations") +
       read_file(kRoot / "configs/vismach_links") +
       read_file(kRoot / "tests/twin/compare/planted/run_planted");
   of_others += run_kerf("machine --help").output + " --build --preset --workflow --install ";

@@ -98,7 +98,7 @@ const std::array kFolderRules{
                 "twin/scene/"}},
     FolderRule{"twin/page/",
                {"base/", "mesh/", "interp_bridge/", "stock/", "twin/findings/", "twin/process/",
-                "twin/report/", "twin/compare/", "twin/page/"}},
+                "twin/job/load_text.h", "twin/report/", "twin/compare/", "twin/page/"}},
     FolderRule{"twin/diff/",
                {"base/", "surface/", "interp_bridge/", "stock/", "twin/motion/", "twin/findings/",
                 "twin/machine/", "twin/process/", "twin/compare/", "twin/diff/"}},

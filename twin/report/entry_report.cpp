@@ -21,6 +21,9 @@ std::string place_words(const Vec3& p) {
 }
 
 std::string said_in(std::uint32_t line) { return line > 0 ? trf(" (line {})", line) : ""; }
+std::string said_before(std::uint32_t line) {
+  return line > 0 ? trf(" (before line {})", line) : "";
+}
 
 /// What a start at the line does not do, though lines before it say so: as words of a program.
 std::string missed_words(const EntryReport& entry) {
@@ -29,10 +32,10 @@ std::string missed_words(const EntryReport& entry) {
   if (m.tool > 0) words.push_back(fmt::format("T{} M6{}", m.tool, said_in(entry.tool_line)));
   if (m.spindle != SpindleState::kStopped) {
     words.push_back(fmt::format("{} S{:.0f}{}", m.spindle == SpindleState::kClockwise ? "M3" : "M4",
-                                m.spindle_rpm, said_in(entry.spindle_line)));
+                                m.spindle_rpm, said_before(entry.spindle_line)));
   }
-  if (m.mist) words.push_back("M7" + said_in(entry.coolant_line));
-  if (m.flood) words.push_back("M8" + said_in(entry.coolant_line));
+  if (m.mist) words.push_back("M7" + said_before(entry.coolant_line));
+  if (m.flood) words.push_back("M8" + said_before(entry.coolant_line));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 

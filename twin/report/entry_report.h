@@ -30,7 +30,7 @@ struct EntryReport {
   std::uint32_t line = 0;
   Motion first;         ///< the program's own first motion from that line on
   double before_s = 0;  ///< so much of the program comes before it
-  // Where what is in force was said; 0: nowhere in the program itself.
+  // The tool change; the first motion under what is in force of spindle and coolant. 0: not known.
   std::uint32_t tool_line = 0, spindle_line = 0, coolant_line = 0;
   std::optional<Vec3> at_mm;  ///< --at: where the machine stands
   std::optional<EntryWay>

@@ -85,8 +85,12 @@ class BeforeLine final : public MotionRecorder {
   void tell(EntryReport& report, double top_mm) const {
     report.before_s = end_s_;
     report.tool_line = tool_line_;
-    report.spindle_line = spindle_line_;
-    report.coolant_line = coolant_line_;
+    // What has come since the last motion is said in no line that is known here.
+    const Motion& first = report.first;
+    const bool turns = first.spindle == last_.spindle && first.spindle_rpm == last_.spindle_rpm;
+    const bool cools = first.flood == last_.flood && first.mist == last_.mist;
+    report.spindle_line = turns ? spindle_line_ : 0;
+    report.coolant_line = cools ? coolant_line_ : 0;
     for (const bool changes : {false, true}) {
       const auto found = std::find_if(starts_.rbegin(), starts_.rend(), [&](const Start& start) {
         return start.line < report.line && start.changes_tool == changes &&
@@ -276,10 +280,13 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   const std::vector<Motion> drive = drive_of(driven, own[0].to_mm);
   if (drive.empty()) return plan;
   report.drive = judged_drive(*judging, drive);
-  report.drive_is_feed = std::any_of(
-      drive.begin(), drive.end(), [](const Motion& m) { return m.kind != MotionKind::kTraverse; });
+  if (report.drive->clear()) return plan;
   // Of rapids the run itself tells.
-  if (!report.drive->clear() && report.drive_is_feed) plan.findings.push_back(contact_of(report));
+  const SourceRef met = report.drive->findings.front().source;
+  report.drive_is_feed = std::any_of(drive.begin(), drive.end(), [&](const Motion& m) {
+    return m.kind != MotionKind::kTraverse && m.source == met;
+  });
+  if (report.drive_is_feed) plan.findings.push_back(contact_of(report));
   return plan;
 }
 

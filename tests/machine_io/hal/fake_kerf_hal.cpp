@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -75,7 +76,7 @@ void pause_for(milliseconds time) { std::this_thread::sleep_for(time); }
     char bytes[sizeof(record)];
     std::memcpy(bytes, &record, sizeof(record));
     for (std::size_t at = 0; at < sizeof(record); at += 96) {
-      put(bytes + at, 96);
+      put(bytes + at, std::min<std::size_t>(96, sizeof(record) - at));
       pause_for(milliseconds(1));
     }
   }

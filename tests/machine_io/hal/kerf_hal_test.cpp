@@ -34,7 +34,8 @@ Ran run(const std::string& command) {
 TEST(KerfHal, SaysWhatItTakes) {
   const Ran help = run(KERF_HAL " --help");
   EXPECT_EQ(help.status, 0);
-  EXPECT_EQ(help.output.rfind("usage: kerf-hal [--rate HZ] >PIPE\n", 0), 0u) << help.output;
+  EXPECT_EQ(help.output.rfind("usage: kerf-hal [--rate HZ] [--load PIN] >PIPE\n", 0), 0u)
+      << help.output;
 }
 
 TEST(KerfHal, RefusesWrongArguments) {

@@ -118,10 +118,10 @@ TEST_F(ViewFiles, FaultsOfTheCommandLineComeAtOnce) {
 TEST_F(ViewFiles, ColoursOfForcesWantAMaterial) {
   EXPECT_EQ(err_of({program_, "--png", "x.png", "--color", "force"}, 2),
             "kerf: error: --color: force is worked out of the material, which nobody has said\n"
-            "  hint: --material NAME says it; docs/cutting-forces.md lists them\n");
+            "   hint: --material NAME says it; docs/cutting-forces.md lists them\n");
   EXPECT_EQ(err_of({program_, "--png", "x.png", "--color", "chip"}, 2),
             "kerf: error: --color: chip is not measured\n"
-            "  hint: --engagement or --material NAME measures it\n");
+            "   hint: --engagement or --material NAME measures it\n");
   EXPECT_NE(
       err_of({program_, "--png", "x.png", "--color", "blue"}, 2).find("'blue' is not allowed"),
       std::string::npos);
