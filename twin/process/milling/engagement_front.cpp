@@ -399,7 +399,10 @@ void EngagementScan::round_contact(const Station& station, double angle, FrontCo
     const RayPlace& at = along_[k];
     if (at.depth > 0) {
       const double lowest = cutter_->height_mm(at.radius * std::abs(std::sin(angle)));
-      found.deep_mm = std::max(found.deep_mm, at.depth + cutter_->height_mm(at.radius) - lowest);
+      // At the blank's edge heights are taken further than they go.
+      const double above_tip = std::min(at.depth + cutter_->height_mm(at.radius),
+                                        heights_->bounds_mm().max.z - station.tip_z);
+      found.deep_mm = std::max(found.deep_mm, above_tip - lowest);
       if (k == 0) inner = at.radius;
       outer = at.radius;
     }
