@@ -99,7 +99,7 @@ void WindowTest::SetUp() {
 
 void WindowTest::open(WindowOptions options) {
   options.settings_file = settings_file_;
-  options.max_frames_per_s = 1000;
+  options.max_frames_per_s = most_frames_per_s_;
   if (options.width_px == 0 && settings_file_.empty()) {
     options.width_px = kWidth;
     options.height_px = kHeight;

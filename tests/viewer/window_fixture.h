@@ -53,6 +53,7 @@ class WindowTest : public testing::Test {
   void SetUp() override;
   /// With the scene of these tests, drawn and settled. The mouse is over the background.
   void open(WindowOptions options = {});
+  int most_frames_per_s_ = 1000;  ///< of the next one that is opened
   void publish(Moment moment);
   /// Turns until nothing is left to be drawn.
   void settle();
