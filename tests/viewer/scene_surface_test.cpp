@@ -294,7 +294,7 @@ TEST_F(SurfaceColorsTest, AreThoseOfThePathWhereThatIsWanted) {
     for (int y = -2; y <= 2; ++y) tones.insert(tone_of(at(picture, {middle.x, middle.y + y})));
     return tones;
   };
-  const Vec3 first(15, 5, 1), second(45, 5, 1), beside(15, 9, 0), traverse(60, 20, 1);
+  const Vec3 first(15, 5, 1), second(45, 5, 1), beside(15, 9, 0);
   // Colours of whoever has no numbers for the path are for the surface alone.
   options.color_on = ColorTarget::kPath;
   scene.apply(colors_update(ColorBy::kTool, {0xff0000ff, 0xff00ff00, 0xffff0000}));
