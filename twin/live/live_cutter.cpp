@@ -38,7 +38,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
     punch_.emplace(options_, matcher_, cutter_.stage(), machine_watch_, log);
   }
   cutter_.stage().set_frame(work());
-  cutter_.stage().tell_loads([this](const CutLoadPart& part) { loads_.hear(part); });
+  cutter_.stage().hear_loads(loads_);
 }
 
 void LiveCutter::follow_program(std::unique_ptr<Program> program) {

@@ -136,27 +136,25 @@ void LoadWatch::tell_stillness(double t_s) {
   log_.add(std::move(finding));
 }
 
-void LoadWatch::hear(const CutLoadPart& part) {
-  if (part.rpm > 0) part_rpm_ = part.rpm;
-  heard_s_ = std::max(heard_s_, part.start_s + part.seconds);
-  const bool is_known = part.is_known && part.seconds <= kLongStep_s;
-  const double power = per_power_w(), torque = per_torque_nm();
-  const auto asked = [&](double power_w, double torque_nm) {
-    return (power > 0 ? power * power_w : 0) + (torque > 0 ? torque * torque_nm : 0);
-  };
-  const ValueRange load{asked(part.power_w.low, part.torque_nm.low),
-                        asked(part.power_w.nominal, part.torque_nm.nominal),
-                        asked(part.power_w.high, part.torque_nm.high)};
-  bins_.spread(part.start_s, part.start_s + part.seconds, [&](LoadBin& bin, double seconds) {
+void LoadWatch::on_load(const CutLoad& load) {
+  if (load.rpm > 0) part_rpm_ = load.rpm;
+  const double end_s = load.start_s + load.seconds;
+  heard_s_ = std::max(heard_s_, end_s);
+  const bool is_known = (!load.is_engaged || load.has_forces()) && load.seconds <= kLongStep_s;
+  const double per_kw = 1000 * std::max(0.0, per_power_w()),
+               per_nm = std::max(0.0, per_torque_nm());
+  const ValueRange power = load.of(LoadKind::kPower).times(per_kw);
+  const ValueRange torque = load.of(LoadKind::kTorque).times(per_nm);
+  bins_.spread(load.start_s, end_s, [&](LoadBin& bin, double seconds) {
     bin.is_known = bin.is_known && is_known;
-    if (!part.is_engaged) return;
-    if (bin.tool == 0) bin.source = part.source;
-    bin.is_mixed = bin.is_mixed || (bin.tool != 0 && bin.tool != part.tool);
-    bin.tool = part.tool;
+    if (!load.is_engaged) return;
+    if (bin.tool == 0) bin.source = load.source;
+    bin.is_mixed = bin.is_mixed || (bin.tool != 0 && bin.tool != load.tool);
+    bin.tool = load.tool;
     bin.cut_s += seconds;
-    bin.expected_s.low += load.low * seconds;
-    bin.expected_s.nominal += load.nominal * seconds;
-    bin.expected_s.high += load.high * seconds;
+    bin.expected_s.low += (power.low + torque.low) * seconds;
+    bin.expected_s.nominal += (power.nominal + torque.nominal) * seconds;
+    bin.expected_s.high += (power.high + torque.high) * seconds;
   });
 }
 

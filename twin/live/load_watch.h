@@ -11,8 +11,8 @@
 #include "machine_io/position_source.h"
 #include "twin/findings/finding.h"
 #include "twin/live/load_bins.h"
-#include "twin/process/cut_load_part.h"
 #include "twin/process/cutting_wish.h"
+#include "twin/process/load_listener.h"
 #include "twin/report/live_load.h"
 
 namespace kerf {
@@ -31,7 +31,7 @@ namespace kerf {
 /// of two tools, and cuts that should take less than the idle load is uncertain. What differs for
 /// kLasting_s of the time that is judged, in one direction, is a finding, once a tool and
 /// direction. One thread; deterministic.
-class LoadWatch {
+class LoadWatch final : public LoadListener {
  public:
   static constexpr int kWindow = 16, kShifts = 4;
   static constexpr double kSettle_s = 3, kLasting_s = 5, kLearn_s = 20;
@@ -44,7 +44,7 @@ class LoadWatch {
   LoadWatch(const CuttingWish& wish, FindingLog& log) : wish_(wish), log_(log) {}
 
   void take(const AxisSample& sample, double t_s);
-  void hear(const CutLoadPart& part);
+  void on_load(const CutLoad& load) override;
   /// All parts before `until_s` have been heard.
   void judge(double until_s);
   /// What the other one has learnt of spindle and tools, and told of them.

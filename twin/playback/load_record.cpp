@@ -32,6 +32,7 @@ void LoadRecord::find_motions(const CutLoad& load) {
 }
 
 void LoadRecord::on_load(const CutLoad& load) {
+  if (!load.is_engaged || !load.is_measured) return;
   find_motions(load);
   const std::lock_guard lock(mutex_);
   curve_.on_load(load);

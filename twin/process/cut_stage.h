@@ -49,9 +49,6 @@ class CutStage : private StepSink {
   /// From now on it is told how milling tools are engaged. Before the first motion; outlives the
   /// stage.
   void log_engagement(EngagementLog& log) { site_.engagement = &log; }
-  /// It is told what the cuts of milling tools ask of the spindle, where the material is known and
-  /// engagement is logged. Before the first motion.
-  void tell_loads(CutLoadHearer hearer) { site_.hears_loads = std::move(hearer); }
   /// With log_engagement(): from now on it is told what the cuts of milling tools are like. Before
   /// the first motion; outlives the stage.
   void hear_loads(LoadListener& listener) { site_.loads = &listener; }

@@ -27,8 +27,7 @@ void LoadCurve::double_step() {
   step_s_ *= 2;
 }
 
-void LoadCurve::add(Columns& columns, const CutLoad::Value& value, std::size_t first,
-                    std::size_t end) {
+void LoadCurve::add(Columns& columns, const ValueRange& value, std::size_t first, std::size_t end) {
   if (columns.nominal.size() < end) {
     columns.nominal.resize(end);
     columns.high.resize(end);
@@ -40,6 +39,7 @@ void LoadCurve::add(Columns& columns, const CutLoad::Value& value, std::size_t f
 }
 
 void LoadCurve::on_load(const CutLoad& load) {
+  if (!load.is_engaged || !load.is_measured) return;
   const double end_s = load.start_s + load.seconds;
   if (!(load.start_s >= 0) || !(load.seconds > 0) || !std::isfinite(end_s)) return;
   while (end_s >= step_s_ * static_cast<double>(kMost)) double_step();
@@ -48,7 +48,7 @@ void LoadCurve::on_load(const CutLoad& load) {
   const auto end =
       std::max(first + 1, static_cast<std::size_t>(std::ceil(end_s / step_s_ * (1 - 1e-12))));
   for (std::size_t k = 0; k < kLoadKinds; ++k) {
-    const CutLoad::Value& value = load.values[k];
+    const ValueRange& value = load.values[k];
     if (value.nominal > 0 && std::isfinite(value.high)) add(columns_[k], value, first, end);
   }
 }

@@ -30,7 +30,7 @@ class LoadCurve final : public LoadListener {
     std::vector<float> nominal, high;
   };
   const Columns& of(LoadKind kind) const { return columns_[static_cast<std::size_t>(kind)]; }
-  void add(Columns& columns, const CutLoad::Value& value, std::size_t first, std::size_t end);
+  void add(Columns& columns, const ValueRange& value, std::size_t first, std::size_t end);
   void double_step();
 
   double step_s_ = kFirstStep_s;

@@ -1,10 +1,13 @@
 // twin/process/load_listener.h - what the cuts of milling tools are like, place by place: for who
-// shows it over time, along the path and over the workpiece.
+// shows it over time, along the path and over the workpiece, or holds a machine against it.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+
+#include "cutting/material.h"
+#include "interp_bridge/motion.h"
 
 namespace kerf {
 
@@ -20,20 +23,25 @@ enum class LoadKind : std::uint8_t {
 };
 inline constexpr std::size_t kLoadKinds = 6;
 
-/// Of a part of a feed move on which a tool is engaged.
+/// Of a part of a feed move.
 struct CutLoad {
-  struct Value {
-    double nominal = 0;  ///< 0: not known
-    double high = 0;     ///< end of its range; of what has none `nominal`
-  };
   double start_s = 0;  ///< program time
   double seconds = 0;
-  std::array<Value, kLoadKinds> values{};
+  int tool = 0;
+  SourceRef source;
+  double rpm = 0;           ///< 0: the spindle stands, or nobody knows
+  bool is_engaged = false;  ///< false: the tool is in the air, and all values are 0
+  bool is_measured = true;  ///< false: nobody knows how it is engaged
+  /// The nominal one is 0: not known. What has no range is the same thrice.
+  std::array<ValueRange, kLoadKinds> values{};
 
-  void set(LoadKind kind, double nominal, double high) {
-    values[static_cast<std::size_t>(kind)] = {nominal, high};
+  void set(LoadKind kind, const ValueRange& range) {
+    values[static_cast<std::size_t>(kind)] = range;
   }
-  const Value& of(LoadKind kind) const { return values[static_cast<std::size_t>(kind)]; }
+  void set(LoadKind kind, double value) { set(kind, {value, value, value}); }
+  const ValueRange& of(LoadKind kind) const { return values[static_cast<std::size_t>(kind)]; }
+  /// What it asks of the spindle could be worked out. Not of tools without teeth=N.
+  bool has_forces() const { return of(LoadKind::kPower).nominal > 0; }
 };
 
 class LoadListener {
@@ -42,7 +50,7 @@ class LoadListener {
   /// In program order, some motions late: when what they remove is known.
   virtual void on_load(const CutLoad& load) = 0;
   /// All of it is cut once more: what was told does not count.
-  virtual void restart() = 0;
+  virtual void restart() {}
 };
 
 }  // namespace kerf

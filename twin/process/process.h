@@ -27,7 +27,6 @@
 #include "twin/process/check_options.h"
 #include "twin/process/collision_table.h"
 #include "twin/process/cut_labels.h"
-#include "twin/process/cut_load_part.h"
 #include "twin/process/cut_progress.h"
 #include "twin/process/fallen_piece.h"
 #include "twin/process/feed_check.h"
@@ -64,7 +63,6 @@ struct ProcessSite {
   MotionRecorder* recorder = nullptr;       ///< CutStage::record_by()
   std::uint64_t motion = 0;                 ///< its number of the motion that is taken now
   std::optional<std::uint64_t> first_id{};  ///< CutStage::number_from()
-  CutLoadHearer hears_loads{};              ///< CutStage::tell_loads()
 
   /// Of a motion, one of its moves has been cut.
   void note_cut(std::uint64_t number, double removed_mm3, double depth_mm) const {

@@ -74,17 +74,16 @@ struct Shop {
         if (machine.tells_rpm) sample.spindle_rpm = span.rpm;
         if (t_s < machine.goes_s) sample.load = frozen;
         watch.take(sample, t_s);
-        CutLoadPart part;
+        CutLoad part;
         part.start_s = t_s - machine.period_s;
         part.seconds = machine.period_s;
         part.tool = span.tool;
         part.source = {0, line};
         part.rpm = span.rpm;
         part.is_engaged = span.nominal_w > 0;
-        part.is_known = span.is_known;
         const ValueRange range{0.6, 1, 1.4};
-        part.power_w = range.times(span.nominal_w);
-        watch.hear(part);
+        if (span.is_known) part.set(LoadKind::kPower, range.times(span.nominal_w / 1000));
+        watch.on_load(part);
         if (i % 10 == 0) watch.judge(t_s - LoadWatch::kDelay_s);
       }
     }

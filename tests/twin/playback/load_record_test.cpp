@@ -18,9 +18,10 @@ std::shared_ptr<const ProgramTrack> strokes() {
 
 CutLoad force(double from_s, double to_s, double newton) {
   CutLoad load;
+  load.is_engaged = true;
   load.start_s = from_s;
   load.seconds = to_s - from_s;
-  load.set(LoadKind::kForce, newton, 1.5 * newton);
+  load.set(LoadKind::kForce, {newton, newton, 1.5 * newton});
   return load;
 }
 

@@ -10,9 +10,10 @@ namespace {
 
 CutLoad load_at(double start_s, double seconds, double force_n, double high_n) {
   CutLoad load;
+  load.is_engaged = true;
   load.start_s = start_s;
   load.seconds = seconds;
-  load.set(LoadKind::kForce, force_n, high_n);
+  load.set(LoadKind::kForce, {force_n, force_n, high_n});
   return load;
 }
 

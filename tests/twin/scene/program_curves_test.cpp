@@ -97,9 +97,10 @@ TEST(ProgramCurves, LoadsAreInTheColumnsOfTheOthersWithTheirLimits) {
     if (way.x > 29 && !track->is_traverse(i)) cut = i;
   }
   CutLoad load;
+  load.is_engaged = true;
   load.start_s = track->start_s(cut);
   load.seconds = track->end_s(cut) - load.start_s;
-  load.set(LoadKind::kPower, 1.5, 2.5);
+  load.set(LoadKind::kPower, {1, 1.5, 2.5});
   record->on_load(load);
   CuttingWish wish;
   wish.spindle_power_kw = 2;

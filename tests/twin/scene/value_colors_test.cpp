@@ -28,9 +28,10 @@ class ValueColorsTest : public testing::Test {
  protected:
   void note(std::size_t motion, LoadKind kind, double value) {
     CutLoad load;
+    load.is_engaged = true;
     load.start_s = track_->start_s(motion);
     load.seconds = track_->end_s(motion) - load.start_s;
-    load.set(kind, value, value);
+    load.set(kind, value);
     record_.on_load(load);
   }
   std::shared_ptr<const CutColors> made(ColorBy mode) {

@@ -71,42 +71,34 @@ void CutLoads::note(Trouble trouble, const Part& part, double value, const Value
 
 void CutLoads::take(const Part& part, LoadListener* listener) {
   if (tool_ == nullptr || part.way.seconds <= 0) return;
-  const bool is_engaged = part.look.is_engaged();
-  asked_ = {part.start_s,
-            part.way.seconds,
-            tool_->number,
-            part.source,
-            part.rpm,
-            is_engaged,
-            !is_engaged,
-            {},
-            {}};
   load_ = {};
+  load_.is_engaged = part.look.is_engaged();
   feed_s_ += part.way.seconds;
-  if (is_engaged) {
+  if (load_.is_engaged) {
     close_air();
     take_engaged(part);
+    load_.set(LoadKind::kAngle, part.look.angle_rad * kDegrees);
   } else {
     take_air(part);
   }
-  if (hearer_) hearer_(asked_);
-  if (!is_engaged || listener == nullptr) return;
+  if (listener == nullptr) return;
   load_.start_s = part.start_s;
   load_.seconds = part.way.seconds;
-  const double angle_deg = part.look.angle_rad * kDegrees;
-  load_.set(LoadKind::kAngle, angle_deg, angle_deg);
+  load_.tool = tool_->number;
+  load_.source = part.source;
+  load_.rpm = part.rpm;
   listener->on_load(load_);
 }
 
-void CutLoads::take_unknown(double start_s, double seconds) {
-  if (!hearer_ || tool_ == nullptr) return;
-  CutLoadPart part;
-  part.start_s = start_s;
-  part.seconds = seconds;
-  part.tool = tool_->number;
-  part.is_engaged = true;
-  part.is_known = false;
-  hearer_(part);
+void CutLoads::tell_unmeasured(double start_s, double seconds, LoadListener* listener) const {
+  if (listener == nullptr || tool_ == nullptr) return;
+  CutLoad load;
+  load.start_s = start_s;
+  load.seconds = seconds;
+  load.tool = tool_->number;
+  load.is_engaged = true;
+  load.is_measured = false;
+  listener->on_load(load);
 }
 
 void CutLoads::take_engaged(const Part& part) {
@@ -161,12 +153,12 @@ void CutLoads::take_plunge(const Part& part, double feed_mm) {
   if (!wish_.material) {
     const double chip_mm = feed_mm * std::sin(cut.point_deg / 2 / kDegrees);
     loads.chip_mm.add(chip_mm, part.way.seconds, part.source, part.from_mm);
-    load_.set(LoadKind::kChip, chip_mm, chip_mm);
+    load_.set(LoadKind::kChip, chip_mm);
     return;
   }
   const DrillingLoad load = drilling_load(*wish_.material, cut, tool_->traits.rake_deg);
   loads.chip_mm.add(load.chip_mm, part.way.seconds, part.source, part.from_mm);
-  load_.set(LoadKind::kChip, load.chip_mm, load.chip_mm);
+  load_.set(LoadKind::kChip, load.chip_mm);
   add_forces(part, load.thrust_n, load.torque_nm, load.torque_nm, load.power_w);
 }
 
@@ -178,7 +170,7 @@ void CutLoads::take_cut(const Part& part, double feed_mm) {
                        std::clamp(look.exit_rad, 0.0, kPi), look.deep_mm, part.rpm};
   const Chip chip = chip_of(*tool_->profile, cut);
   loads.chip_mm.add(chip.most_mm, part.way.seconds, part.source, part.from_mm);
-  load_.set(LoadKind::kChip, chip.most_mm, chip.most_mm);
+  load_.set(LoadKind::kChip, chip.most_mm);
   const double speed = kPi * look.effective_mm * part.rpm / 1000;
   loads.speed_m_per_min.add(speed, part.way.seconds, part.source, part.from_mm);
   if (!wish_.material) return;
@@ -207,16 +199,13 @@ void CutLoads::add_forces(const Part& part, const ValueRange& force_n, const Val
   const auto add = [&](LoadSpread& spread, ValueRange& most, const ValueRange& range) {
     spread.add(range, part.way.seconds, part.source, most, part.from_mm);
   };
-  asked_.is_known = true;
-  asked_.power_w = power_w;
-  asked_.torque_nm = torque_mean_nm;
   const ValueRange power_kw = power_w.times(1e-3);
   add(loads.force_n, loads.force_most_n, force_n);
   add(loads.torque_nm, loads.torque_most_nm, torque_nm);
   add(loads.power_kw, loads.power_most_kw, power_kw);
-  load_.set(LoadKind::kForce, force_n.nominal, force_n.high);
-  load_.set(LoadKind::kTorque, torque_mean_nm.nominal, torque_mean_nm.high);
-  load_.set(LoadKind::kPower, power_kw.nominal, power_kw.high);
+  load_.set(LoadKind::kForce, force_n);
+  load_.set(LoadKind::kTorque, torque_mean_nm);
+  load_.set(LoadKind::kPower, power_kw);
   if (wish_.spindle_power_kw > 0 && power_kw.high > wish_.spindle_power_kw)
     note(kPower, part, power_kw.nominal, power_kw);
   // A spindle's own mass takes what a tooth takes for a moment.
@@ -240,7 +229,7 @@ void CutLoads::add_bend(const Part& part, const ValueRange& force_n, const Value
   loads.has_bend = true;
   if (bend.nominal > loads.bend_mm.most()) loads.bend_most_mm = bend;
   loads.bend_mm.add(bend.nominal, part.way.seconds, part.source, part.from_mm);
-  load_.set(LoadKind::kBend, bend.nominal, bend.high);
+  load_.set(LoadKind::kBend, bend);
   const double wall_mm = std::abs(carbide * wall_n.nominal);
   if (wall_mm > loads.wall_mm.most()) {
     loads.wall_most_mm = {(wall_n.low < 0 ? steel : least) * wall_n.low, carbide * wall_n.nominal,

@@ -15,7 +15,6 @@
 #include "stock/cutter/cutter.h"
 #include "twin/findings/finding.h"
 #include "twin/job/tool_loads.h"
-#include "twin/process/cut_load_part.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/engagement.h"
 #include "twin/process/load_listener.h"
@@ -44,9 +43,7 @@ class CutLoads {
   /// `listener`: is told what it was like; null: nobody is.
   void take(const Part& part, LoadListener* listener = nullptr);
   /// Of a part that nobody has measured.
-  void take_unknown(double start_s, double seconds);
-  /// Is told what each part asks of the spindle.
-  void hear_by(CutLoadHearer hearer) { hearer_ = std::move(hearer); }
+  void tell_unmeasured(double start_s, double seconds, LoadListener* listener) const;
   /// The program is over: what is wrong.
   void finish();
   void forget();
@@ -121,9 +118,7 @@ class CutLoads {
   CuttingWish wish_;
   std::vector<Tool> tools_;
   Tool* tool_ = nullptr;
-  CutLoadHearer hearer_;
-  CutLoadPart asked_;  ///< by the present part
-  CutLoad load_;       ///< of it
+  CutLoad load_;  ///< of the present part
   double feed_s_ = 0, air_s_ = 0;
   AirWay air_;
   std::vector<AirWay> longest_air_;  ///< five at most, the longest first

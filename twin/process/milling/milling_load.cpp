@@ -67,7 +67,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
     if (near) engagement_->take_unmeasured(step.length_mm);
-    if (near) loads_.take_unknown(step.start_s, step.duration_s);
+    if (near) loads_.tell_unmeasured(step.start_s, step.duration_s, site_.loads);
     engagement_->lift();
     return;
   }

@@ -178,7 +178,6 @@ bool MillingStage::mount_for(const Motion& m) {
   if (mounted_->cutter) mount_parts(m);
   if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
-    loads_.hear_by(site_.hears_loads);
     engagement_->hear_by([this](const EngagementLog::Part& part) {
       ++load_parts_told_;
       load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,

@@ -111,7 +111,9 @@ TEST_F(CutLoadsTest, ListenersHearTheSameOfEachPart) {
   Heard heard;
   loads_->take({slot(4), {40, 6, 0}, {0, 9}, 12.5, Vec3(0), 2000, 400}, &heard);
   loads_->take({{}, {40, 6, 0}, {0, 10}, 18.5, Vec3(0), 2000, 400}, &heard);  // in the air
-  ASSERT_EQ(heard.loads.size(), 1u);
+  ASSERT_EQ(heard.loads.size(), 2u);
+  EXPECT_FALSE(heard.loads[1].is_engaged);
+  EXPECT_EQ(heard.loads[1].of(LoadKind::kAngle).nominal, 0);
   const CutLoad& load = heard.loads[0];
   EXPECT_EQ(load.start_s, 12.5);
   EXPECT_EQ(load.seconds, 6);
