@@ -45,6 +45,7 @@ void LoadedFile::take_lines() {
   if (got <= 0) {
     child_.reset();
     path_.reset();
+    line_.clear();  // what it had begun to say is not the next one's
     return;
   }
   constexpr std::string_view kProgram = "program ";

@@ -2,19 +2,14 @@
 
 #include <fmt/format.h>
 #include <sched.h>
-#include <stdlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/exit_code.h"
+#include "base/small_file.h"
 #include "base/translate.h"
 #include "twin/batch/option_table.h"
 #include "twin/findings/finding_table.h"
@@ -27,9 +22,13 @@ using Json = nlohmann::json;
 /// Of a process that fails: its first line says why.
 constexpr std::size_t kLongestTrouble = 300;
 
+/// Of a report, whose findings are bounded.
+constexpr std::size_t kLargestFile = 64'000'000;
+
+/// Empty: there is none.
 std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  Result<std::string> text = read_small_file(path, kLargestFile);
+  return text ? std::move(*text) : std::string();
 }
 
 /// What this thread starts meanwhile runs when nobody else wants the processor.
@@ -118,13 +117,10 @@ std::optional<DryRunResult> dry_run_result(const std::string& program, const std
 }
 
 Result<DryRun> DryRun::start(const std::string& program, const WrittenOptions& options) {
-  DryRun run;
-  run.program_ = program;
-  std::string folder = (std::filesystem::temp_directory_path() / "kerf-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    return Error{fmt::format("{}: {}", folder, std::strerror(errno))};
-  }
-  run.folder_ = folder;
+  Result<PrivateFolder> made = PrivateFolder::create();
+  if (!made) return Error{made.error()};
+  DryRun run(program, std::move(*made));
+  const std::string& folder = run.folder_.path();
   std::vector<std::string> words{"run"};
   for (std::string& word : run_words(options)) words.push_back(std::move(word));
   words.insert(words.end(), {"--quiet", "--json=" + folder + "/report.json", program});
@@ -135,31 +131,13 @@ Result<DryRun> DryRun::start(const std::string& program, const WrittenOptions& o
   return run;
 }
 
-DryRun::DryRun(DryRun&& other) noexcept
-    : program_(std::move(other.program_)),
-      folder_(std::exchange(other.folder_, {})),
-      process_(std::exchange(other.process_, std::nullopt)) {}
-
-DryRun& DryRun::operator=(DryRun&& other) noexcept {
-  std::swap(program_, other.program_);
-  std::swap(folder_, other.folder_);
-  std::swap(process_, other.process_);
-  return *this;
-}
-
-DryRun::~DryRun() {
-  process_.reset();
-  std::error_code ignored;
-  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-}
-
 std::optional<DryRunResult> DryRun::look() {
   if (!process_) return std::nullopt;
   const std::optional<ProcessEnd> end = process_->look(BoundedProcess::Clock::now());
   if (!end) return std::nullopt;
   process_.reset();
   std::optional<DryRunResult> result =
-      dry_run_result(program_, content_of(folder_ + "/report.json"));
+      dry_run_result(program_, content_of(folder_.path() + "/report.json"));
   const bool has_ended = end->exit_code == kExitGood || end->exit_code == kExitFindings ||
                          end->exit_code == kExitLossy;
   if (!result) result.emplace().program = program_;
@@ -167,7 +145,7 @@ std::optional<DryRunResult> DryRun::look() {
   // More findings than a report keeps.
   if (end->exit_code == kExitFindings) result->errors = std::max(result->errors, 1);
   if (result->is_done) return result;
-  const std::string said = content_of(folder_ + "/said");
+  const std::string said = content_of(folder_.path() + "/said");
   result->trouble = said.substr(0, std::min(said.find('\n'), kLongestTrouble));
   if (result->trouble.empty()) {
     result->trouble = end->signal != 0 ? trf("ended by signal {}", end->signal)

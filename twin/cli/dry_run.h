@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
+#include "interp_bridge/private_folder.h"
 #include "twin/batch/bounded_process.h"
 #include "twin/config/written_options.h"
 #include "twin/findings/finding.h"
@@ -36,19 +38,16 @@ class DryRun {
  public:
   /// `options`: those of a watch; what `kerf run` has, too, is passed on to it.
   static Result<DryRun> start(const std::string& program, const WrittenOptions& options);
-  DryRun(DryRun&& other) noexcept;
-  DryRun& operator=(DryRun&& other) noexcept;
-  /// Ends it, if it still runs, and removes its files.
-  ~DryRun();
-
   /// The result, once; nothing as long as it runs.
   std::optional<DryRunResult> look();
 
  private:
-  DryRun() = default;
+  DryRun(std::string program, PrivateFolder folder)
+      : program_(std::move(program)), folder_(std::move(folder)) {}
+
   std::string program_;
-  std::string folder_;
-  std::optional<BoundedProcess> process_;
+  PrivateFolder folder_;                   // goes after what writes into it
+  std::optional<BoundedProcess> process_;  ///< ended by its destructor
 };
 
 }  // namespace kerf

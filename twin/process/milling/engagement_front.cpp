@@ -15,7 +15,7 @@ constexpr double kThinnestFront_mm = 0.002;
 constexpr int kRays = FrontRays::kMost;
 /// Radii along a ray, of cutters that are not flat; fewer, in some directions, to learn how far out
 /// they are in material at all; and steps to where they are.
-constexpr int kRadii = 30, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
+constexpr int kRadii = 30, kBriefRadii = 10, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
 constexpr double kLeastStep = 0.1;
 /// What is no farther above material, of the radius, may be in some between two radii.
 constexpr double kNearMaterial = 0.06;
@@ -365,8 +365,8 @@ EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, Ray
 void EngagementScan::look_along(const Ray& ray) {
   along_.clear();
   std::size_t nearest = 0;
-  for (int k = 0; k <= kRadii; ++k) {
-    const double radius = radius_of(k, kRadii) * (1 - kSameRadius);
+  for (int k = 0; k <= radii_; ++k) {
+    const double radius = radius_of(k, radii_) * (1 - kSameRadius);
     along_.push_back({radius, over_ray(ray, radius)});
     if (along_.back().depth > along_[nearest].depth) nearest = along_.size() - 1;
   }
@@ -486,6 +486,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   set_held(asked.held);
   const bool knows_walls = asked.owners != nullptr && asked.ways != nullptr;
   own_until_ = 0;
+  radii_ = asked.is_brief ? kBriefRadii : kRadii;
   owners_ = knows_walls ? asked.owners : nullptr, ways_ = asked.ways;
   engaged_ = engaged_radius();
   if (engaged_ <= 0) return {};

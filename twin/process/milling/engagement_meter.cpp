@@ -23,6 +23,7 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
 constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 30'000, kShareOfCells = 0.25;
+constexpr double kBrief = 0.4;  ///< of a look, one in brief
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
@@ -86,8 +87,8 @@ EngagementLook EngagementMeter::look(double at) {
   if (points_ != nullptr)
     return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, *move_,
                        {at, anticlockwise_});
-  const EngagementScan::Look ahead{at, has_held_ ? &held_ : nullptr, anticlockwise_, owners_,
-                                   &ways_};
+  const EngagementScan::Look ahead{
+      at, has_held_ ? &held_ : nullptr, anticlockwise_, owners_, &ways_, is_brief_};
   return scan_.look_ahead(*heights_, *cutter_, *move_, ahead);
 }
 
@@ -228,8 +229,11 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     since_mm_ = -1;
   } else if (length_mm_ < farthest) {
     const EngagementLook before = last_;
+    // What has to be looked at, though nothing is saved up for it.
+    is_brief_ = saved_cells_ < 0;
     last_ = look(0.5);
-    saved_cells_ -= look_cells_;
+    saved_cells_ -= is_brief_ ? kBrief * look_cells_ : look_cells_;
+    is_brief_ = false;
     const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
     spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;
     spacing_mm_ = std::max(spacing_mm_, farthest);

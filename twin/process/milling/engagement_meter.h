@@ -99,7 +99,8 @@ class EngagementMeter {
   bool has_held_ = false;
   CutMove held_;
   EngagementLook last_;
-  double since_mm_ = 0;  ///< way since last_ was looked at; negative: it counts for nothing
+  double since_mm_ = 0;    ///< way since last_ was looked at; negative: it counts for nothing
+  bool is_brief_ = false;  ///< the look that comes
   double saved_cells_ = 0, look_cells_ = 0;
   double spacing_mm_ = 0;  ///< as far as it counts
   Vec3 last_ahead_{0};     ///< the way of the move that it was looked at on

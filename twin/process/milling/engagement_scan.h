@@ -73,6 +73,7 @@ class EngagementScan {
     /// moves; or null: walls are known to a cell.
     const PresentHeights* owners = nullptr;
     const PastWays* ways = nullptr;
+    bool is_brief = false;  ///< of what is not flat a third of the radii: where there is no time
   };
   /// What the cutter's side has in it where it is at that part of its way, by a ring of looks ahead
   /// of it. At its rim walls are where the moves that made them have left them, and the sides of a
@@ -222,6 +223,7 @@ class EngagementScan {
   const HeightGrid* heights_ = nullptr;
   const Cutter* cutter_ = nullptr;  ///< of a look
   std::vector<RayPlace> along_;     ///< one direction of it
+  int radii_ = 0;                   ///< along it
   Motion motion_;                   ///< of arcs
   bool arc_ = false;
   double radius_ = 0, flat_radius_ = 0;
