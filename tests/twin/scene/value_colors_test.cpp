@@ -88,12 +88,12 @@ TEST_F(ValueColorsTest, WhatIsAboveALimitHasAColourOfItsOwn) {
   EXPECT_EQ(colors->legend[colors->legend.size() - 2].range->to, 2.2);
   // The sound twin: below the limit nothing has it.
   wish_.spindle_power_kw = 5;
-  for (const ColorLegendEntry& entry : made(ColorBy::kPower)->legend)
-    EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
+  const auto below = made(ColorBy::kPower);
+  for (const ColorLegendEntry& entry : below->legend) EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
   // Nor has force a limit.
   note(first(), LoadKind::kForce, 1000);
-  for (const ColorLegendEntry& entry : made(ColorBy::kForce)->legend)
-    EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
+  const auto force = made(ColorBy::kForce);
+  for (const ColorLegendEntry& entry : force->legend) EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
 }
 
 TEST_F(ValueColorsTest, StraightDownIsNoAngle) {
