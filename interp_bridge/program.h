@@ -18,6 +18,7 @@
 
 #include "base/diagnostic.h"
 #include "base/result.h"
+#include "interp_bridge/active_modes.h"
 #include "interp_bridge/motion.h"
 #include "interp_bridge/torch_materials.h"
 #include "interp_bridge/turning_text.h"
@@ -194,6 +195,7 @@ struct ProgramSummary {
   bool has_rotary_motion = false;  ///< any A, B or C motion
   std::vector<ProgramNote> notes;  ///< first 100 different ones
   std::uint64_t lost_splines = 0;  ///< whose points the listing does not hold
+  ActiveModes modes;               ///< at InterpreterSetup::first_line
   bool stopped_early = false;      ///< by the stop token, the consumer, or a limit
   double interpret_s = 0;          ///< wall seconds until the interpreter was done
 };

@@ -40,6 +40,8 @@ enum Code : std::uint8_t {
   kStore = 0x7b,   ///< the block at `line` is about to be run, and may be one of those whose effect
                    ///< shows only later: G28.1, G30.1, G10
   kHere = 0x7c,    ///< the STRAIGHT_TRAVERSE that follows is no move: there the machine stands
+  kMode = 0x7d,    ///< with --first-line, before kHere: a ModeGroup, what it began with, what it is
+                   ///< now; `line` of the program has made it so, 0: it began so
   kEnd = 0x79,     ///< the last record: 1 if the program ended by M2, M30 or %; blocks read
 };
 constexpr bool is_text(std::uint8_t code) {

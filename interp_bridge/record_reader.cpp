@@ -185,6 +185,8 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     case records::kAt:
       place_ = {file_, head.line};
       return true;
+    case records::kMode:
+      return take_mode(head, payload);
     case records::kHere:
       feeder_.take_here();
       return true;
@@ -217,6 +219,18 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     default:
       return refuse(tr("a record of unknown kind"));
   }
+}
+
+bool RecordReader::take_mode(const records::Head& head, const char* payload) {
+  const double group = head.count == 3 ? number_at(payload, 0) : -1;
+  const double begun = head.count == 3 ? number_at(payload, 1) : NAN;
+  const double now = head.count == 3 ? number_at(payload, 2) : NAN;
+  const bool fits = group == std::floor(group) && group >= 0 && group < kModeGroups &&
+                    std::isfinite(begun) && std::isfinite(now);
+  if (!fits) return refuse(tr("a mode whose numbers do not fit"));
+  summary_.modes.resize(kModeGroups);
+  summary_.modes[static_cast<std::size_t>(group)] = {begun, now, head.line};
+  return true;
 }
 
 bool RecordReader::take_file(const records::Head& head, std::string_view name) {

@@ -55,6 +55,7 @@ class RecordReader final : public ByteReader {
   bool take(const records::Head& head, const char* payload);
   bool take_special(const records::Head& head, const char* payload);
   bool take_command(const records::Head& head, const char* payload);
+  bool take_mode(const records::Head& head, const char* payload);
   bool take_file(const records::Head& head, std::string_view name);
   bool take_spline(const records::Head& head, const char* payload);
   bool take_probe(const records::Head& head, const char* payload);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "interp_bridge/canonical.h"
+#include "interp_bridge/kerf_interp/mode_watch.h"
 #include "interp_bridge/kerf_interp/options.h"
 #include "interp_bridge/kerf_interp/recording.h"
 
@@ -94,6 +95,7 @@ class Runner {
     first_line_ = options.first_line;
     there_ = options.there;
     records_.leave_out_deeds(first_line_ > 1);
+    if (first_line_ > 0) modes_.begin(interpreter_);
     return run_blocks();
   }
   std::uint64_t blocks() const { return blocks_; }
@@ -124,6 +126,9 @@ class Runner {
       if (!succeeded(interpreter_.execute())) return report(line_);
       if (!recording().refusal.empty()) return report_refusal();
       if (status_ == INTERP_EXIT) return true;
+      if (first_line_ > 0) {
+        modes_.follow(interpreter_, callers_.empty() ? line_ : callers_.front().line);
+      }
       const int level = interpreter_.call_level();
       if (level != static_cast<int>(callers_.size())) {
         recording().block_does_not_move();
@@ -155,6 +160,7 @@ class Runner {
       records_.numbers(static_cast<std::uint8_t>(CanonicalName::kUseToolLengthOffset),
                        recording().length_offset_line, offset.data(), offset.size());
     }
+    modes_.write(records_);
     records_.numbers(records::kHere, first_line_, {});
     records_.numbers(static_cast<std::uint8_t>(CanonicalName::kStraightTraverse), first_line_,
                      at.data(), at.size());
@@ -220,6 +226,7 @@ class Runner {
   int line_ = 0;        ///< of the block read last
   int first_line_ = 0;  ///< still to come; 0: none is
   std::optional<Pose> there_;
+  ModeWatch modes_;
   std::vector<Caller> callers_;
   Clock::time_point flushed_ = Clock::now();
 };

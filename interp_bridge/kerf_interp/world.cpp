@@ -75,6 +75,7 @@ Pose World::scaled(const Pose& program_units) const {
 }
 
 void World::set_rotation(double degrees) {
+  rotation_deg = degrees;
   const double radians = degrees * 3.14159265358979323846 / 180.0;
   cos_ = std::cos(radians);
   sin_ = std::sin(radians);

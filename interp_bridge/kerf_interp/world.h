@@ -70,6 +70,8 @@ class World {
     if (index >= 0 && output < kAnalogOutputs) analog_outputs[output] = value;
   }
 
+  double rotation_deg = 0;  ///< by set_rotation()
+
   double unit_mm() const { return kerf::mm_of_unit(units == CANON_UNITS_INCHES); }
 
   // ---- Frames

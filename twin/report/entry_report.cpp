@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
@@ -21,22 +23,79 @@ std::string place_words(const Vec3& p) {
 }
 
 std::string said_in(std::uint32_t line) { return line > 0 ? trf(" (line {})", line) : ""; }
-std::string said_before(std::uint32_t line) {
-  return line > 0 ? trf(" (before line {})", line) : "";
+
+const EntryMode* mode_of(const EntryReport& entry, std::string_view name) {
+  const auto found = std::find_if(entry.modes.begin(), entry.modes.end(),
+                                  [&](const EntryMode& mode) { return mode.name == name; });
+  return found == entry.modes.end() ? nullptr : &*found;
+}
+
+std::uint32_t line_of(const EntryReport& entry, std::string_view name) {
+  const EntryMode* const mode = mode_of(entry, name);
+  return mode == nullptr ? 0 : mode->line;
 }
 
 /// What a start at the line does not do, though lines before it say so: as words of a program.
 std::string missed_words(const EntryReport& entry) {
-  const Motion& m = entry.first;
   std::vector<std::string> words;
-  if (m.tool > 0) words.push_back(fmt::format("T{} M6{}", m.tool, said_in(entry.tool_line)));
-  if (m.spindle != SpindleState::kStopped) {
-    words.push_back(fmt::format("{} S{:.0f}{}", m.spindle == SpindleState::kClockwise ? "M3" : "M4",
-                                m.spindle_rpm, said_before(entry.spindle_line)));
+  for (const EntryMode& mode : entry.modes) {
+    if (mode.is_missed()) words.push_back(mode.now + said_in(mode.line));
   }
-  if (m.mist) words.push_back("M7" + said_before(entry.coolant_line));
-  if (m.flood) words.push_back("M8" + said_before(entry.coolant_line));
+  // Deeds first, in the order in which they are entered.
+  const auto is_deed = [](const std::string& word) { return word[0] == 'T' || word[0] == 'M'; };
+  std::stable_partition(words.begin(), words.end(), is_deed);
   return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// "G17 G21 G91 ..": all that is in force and told in one word or two.
+std::string modes_words(const EntryReport& entry) {
+  std::vector<std::string> words;
+  for (const EntryMode& mode : entry.modes) {
+    if (!mode.now.empty()) words.push_back(mode.now);
+  }
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+/// Modes of which LinuxCNC begins with another. Run from here has them; nobody else does.
+std::string other_words(const EntryReport& entry) {
+  std::vector<std::string> words;
+  for (const EntryMode& mode : entry.modes) {
+    if (!mode.is_kept || !mode.differs()) continue;
+    const std::string begins = mode.begins.empty() ? "" : trf(" instead of {}", mode.begins);
+    words.push_back((mode.now.empty() ? trf("no {}", mode.begins) : mode.now + begins) +
+                    said_in(mode.line));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string modes_text(const EntryReport& entry) {
+  if (entry.modes.empty()) return {};
+  std::string out;
+  const std::string missed = missed_words(entry);
+  out += missed.empty()
+             ? tr("          a start there misses nothing\n")
+             : trf("          not done by a start there, so by hand before: {}\n", missed);
+  out += trf("          in force there: {}\n", modes_words(entry));
+  if (const std::string other = other_words(entry); !other.empty()) {
+    out +=
+        trf("          other than LinuxCNC begins: {}; \"run from here\" reads that, a program "
+            "cut off there has to say it\n",
+            other);
+  }
+  return out;
+}
+
+Json modes_json(const EntryReport& entry) {
+  Json modes = Json::array();
+  for (const EntryMode& mode : entry.modes) {
+    modes.push_back(Json{{"name", mode.name},
+                         {"now", mode.now},
+                         {"begins", mode.begins},
+                         {"line", mode.line},
+                         {"differs", mode.differs()},
+                         {"missed", mode.is_missed()}});
+  }
+  return modes;
 }
 
 std::string way_words(const EntryWay& way) {
@@ -74,9 +133,7 @@ std::string entry_text(const EntryReport& entry) {
   std::string out =
       trf("start     at line {}, {} into the program; the tool is then at {}\n", entry.line,
           duration_text(entry.before_s), place_words(entry.first.from_mm));
-  if (const std::string missed = missed_words(entry); !missed.empty()) {
-    out += trf("          not done by a start there, so by hand before: {}\n", missed);
-  }
+  out += modes_text(entry);
   if (entry.first.compensated) {
     out +=
         tr("          G41 or G42 is in force there: LinuxCNC cannot begin in the middle of it\n");
@@ -108,17 +165,18 @@ Json entry_json(const EntryReport& entry, const std::vector<std::string>& files)
            {"before_s", rounded(entry.before_s)},
            {"place_mm", vector_json(m.from_mm)},
            {"tool", m.tool},
-           {"tool_line", entry.tool_line},
+           {"tool_line", line_of(entry, "tool")},
            {"spindle", m.spindle == SpindleState::kStopped     ? "stopped"
                        : m.spindle == SpindleState::kClockwise ? "clockwise"
                                                                : "counterclockwise"},
            {"spindle_rpm", rounded(m.spindle_rpm)},
-           {"spindle_line", entry.spindle_line},
+           {"spindle_line", line_of(entry, "spindle")},
            {"flood", m.flood},
            {"mist", m.mist},
-           {"coolant_line", entry.coolant_line},
+           {"coolant_line", std::max(line_of(entry, "flood"), line_of(entry, "mist"))},
            {"feed_mm_per_min", rounded(m.feed_mm_per_min)},
-           {"compensated", m.compensated}};
+           {"compensated", m.compensated},
+           {"modes", modes_json(entry)}};
   if (entry.at_mm) out["at_mm"] = vector_json(*entry.at_mm);
   if (entry.drive) {
     out["drive"] = way_json(*entry.drive, files);

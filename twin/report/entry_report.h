@@ -9,6 +9,7 @@
 
 #include "interp_bridge/motion.h"
 #include "twin/findings/finding.h"
+#include "twin/report/entry_modes.h"
 
 namespace kerf {
 
@@ -28,11 +29,10 @@ struct EarlierStart {
 
 struct EntryReport {
   std::uint32_t line = 0;
-  Motion first;         ///< the program's own first motion from that line on
-  double before_s = 0;  ///< so much of the program comes before it
-  // The tool change; the first motion under what is in force of spindle and coolant. 0: not known.
-  std::uint32_t tool_line = 0, spindle_line = 0, coolant_line = 0;
-  std::optional<Vec3> at_mm;  ///< --at: where the machine stands
+  Motion first;                  ///< the program's own first motion from that line on
+  double before_s = 0;           ///< so much of the program comes before it
+  std::vector<EntryMode> modes;  ///< what is in force when it begins
+  std::optional<Vec3> at_mm;     ///< --at: where the machine stands
   std::optional<EntryWay>
       drive;                   ///< as LinuxCNC goes from there; nothing: it stands where it should
   bool drive_is_feed = false;  ///< and cuts what is in the way

@@ -34,20 +34,24 @@ bool moves(const Motion& m) {
   }
 }
 
-/// The motions of the program from a line on, as LinuxCNC runs it from there: the first is the
-/// place where it begins.
-std::vector<Motion> begun_at(const SessionOptions& options, std::uint32_t line,
-                             const std::optional<std::array<double, 9>>& there,
-                             const std::function<bool(const std::vector<Motion>&)>& is_enough,
-                             std::stop_token stop, Diagnostics& diagnostics) {
+/// The program from a line on, as LinuxCNC runs it from there.
+struct BegunAt {
+  std::vector<Motion> motions;  ///< the first is the place where it begins
+  ActiveModes modes;            ///< in force there
+};
+BegunAt begun_at(const SessionOptions& options, std::uint32_t line,
+                 const std::optional<std::array<double, 9>>& there,
+                 const std::function<bool(const std::vector<Motion>&)>& is_enough,
+                 std::stop_token stop, Diagnostics& diagnostics) {
   ProgramOptions from = options.program;
   from.machine.first_line = line;
   from.machine.there = there;
   const std::unique_ptr<Program> program = Program::open(from, diagnostics);
-  std::vector<Motion> motions;
-  if (!program) return motions;
+  BegunAt begun;
+  std::vector<Motion>& motions = begun.motions;
+  if (!program) return begun;
   Diagnostics said;  // what is behind what is looked for is told by the run
-  program->run(
+  const ProgramSummary summary = program->run(
       [&](std::span<const Motion> batch) {
         for (const Motion& motion : batch) {
           if (moves(motion)) motions.push_back(motion);
@@ -59,7 +63,8 @@ std::vector<Motion> begun_at(const SessionOptions& options, std::uint32_t line,
   if (motions.size() < 2 && has_error(said)) {
     diagnostics.insert(diagnostics.end(), said.begin(), said.end());
   }
-  return motions;
+  begun.modes = summary.modes;
+  return begun;
 }
 
 /// What comes before the line: where what is in force was said, and where it could be begun.
@@ -71,26 +76,15 @@ class BeforeLine final : public MotionRecorder {
   void on_step(std::uint64_t, const Motion& m, const TimedStep& step) override {
     const std::uint32_t line = m.source.file == 0 ? m.source.line : 0;
     const bool changes = m.kind == MotionKind::kToolChange;
-    if (changes) tool_line_ = line;
-    if (m.spindle != last_.spindle || m.spindle_rpm != last_.spindle_rpm) spindle_line_ = line;
-    if (m.flood != last_.flood || m.mist != last_.mist) coolant_line_ = line;
     if (line != 0 && line != last_line_ && (changes || m.kind == MotionKind::kTraverse)) {
       starts_.push_back({line, step.start_s, m.from_mm.z, changes});
     }
     if (line != 0) last_line_ = line;
-    last_ = m;
     end_s_ = step.start_s + step.duration_s;
   }
 
   void tell(EntryReport& report, double top_mm) const {
     report.before_s = end_s_;
-    report.tool_line = tool_line_;
-    // What has come since the last motion is said in no line that is known here.
-    const Motion& first = report.first;
-    const bool turns = first.spindle == last_.spindle && first.spindle_rpm == last_.spindle_rpm;
-    const bool cools = first.flood == last_.flood && first.mist == last_.mist;
-    report.spindle_line = turns ? spindle_line_ : 0;
-    report.coolant_line = cools ? coolant_line_ : 0;
     for (const bool changes : {false, true}) {
       const auto found = std::find_if(starts_.rbegin(), starts_.rend(), [&](const Start& start) {
         return start.line < report.line && start.changes_tool == changes &&
@@ -111,8 +105,7 @@ class BeforeLine final : public MotionRecorder {
     bool changes_tool;
   };
   std::vector<Start> starts_;
-  Motion last_;
-  std::uint32_t last_line_ = 0, tool_line_ = 0, spindle_line_ = 0, coolant_line_ = 0;
+  std::uint32_t last_line_ = 0;
   double end_s_ = 0;
 };
 
@@ -213,8 +206,8 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   report.at_mm = wish.at_mm;
 
   const auto has_moved = [](const std::vector<Motion>& m) { return m.size() >= 2; };
-  const std::vector<Motion> own =
-      begun_at(options, wish.line, std::nullopt, has_moved, stop, diagnostics);
+  const BegunAt begun = begun_at(options, wish.line, std::nullopt, has_moved, stop, diagnostics);
+  const std::vector<Motion>& own = begun.motions;
   if (has_error(diagnostics)) return std::nullopt;
   if (own.size() < 2) {
     fault(trf("--enter: the program has no motion at line {} or behind it", wish.line),
@@ -223,6 +216,7 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   }
   report.first = own[1];
   report.first.from_mm = own[0].to_mm;
+  report.modes = entry_modes(begun.modes, report.first);
 
   // What comes before the line.
   SessionOptions before = options;
@@ -275,7 +269,8 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   const auto enough = [](const std::vector<Motion>& m) { return m.size() > kMostOfDrive; };
   // What the interpreter refuses there, an arc for one, the run itself tells.
   Diagnostics refused;
-  const std::vector<Motion> driven = begun_at(options, wish.line, there, enough, stop, refused);
+  const std::vector<Motion> driven =
+      begun_at(options, wish.line, there, enough, stop, refused).motions;
   if (driven.size() < 2) return plan;
   const std::vector<Motion> drive = drive_of(driven, own[0].to_mm);
   if (drive.empty()) return plan;
