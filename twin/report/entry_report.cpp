@@ -39,7 +39,9 @@ std::uint32_t line_of(const EntryReport& entry, std::string_view name) {
 std::string missed_words(const EntryReport& entry) {
   std::vector<std::string> words;
   for (const EntryMode& mode : entry.modes) {
-    if (mode.is_missed()) words.push_back(mode.now + said_in(mode.line));
+    if (!mode.is_missed()) continue;
+    const bool by_turn = std::string_view(mode.name) == "feed";
+    words.push_back((by_turn ? "G95 " : "") + mode.now + said_in(mode.line));
   }
   // Deeds first, in the order in which they are entered.
   const auto is_deed = [](const std::string& word) { return word[0] == 'T' || word[0] == 'M'; };
@@ -47,20 +49,40 @@ std::string missed_words(const EntryReport& entry) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// S is told with M3 and M4; that nothing is done about overrides and the like, not at all.
+bool is_shown(const EntryReport& entry, const EntryMode& mode) {
+  const std::string_view name = mode.name;
+  if (name == "speed") {
+    const EntryMode* const spindle = mode_of(entry, "spindle");
+    return spindle == nullptr || spindle->now == "M5" || !spindle->differs();
+  }
+  const bool only_if_other = name == "overrides" || name == "adaptive_feed" ||
+                             name == "feed_hold" || name == "shift" || name == "diameter" ||
+                             name == "spindle" || name == "spindle_mode";
+  return !mode.now.empty() && (!only_if_other || mode.differs());
+}
+
 /// "G17 G21 G91 ..": all that is in force and told in one word or two.
 std::string modes_words(const EntryReport& entry) {
   std::vector<std::string> words;
   for (const EntryMode& mode : entry.modes) {
-    if (!mode.now.empty()) words.push_back(mode.now);
+    if (is_shown(entry, mode)) words.push_back(mode.now);
   }
   return fmt::format("{}", fmt::join(words, " "));
+}
+
+/// What the program says anew before it moves: no mode of its own.
+bool is_of_tool(const EntryMode& mode) {
+  const std::string_view name = mode.name;
+  return name == "tool" || name == "spindle" || name == "mist" || name == "flood";
 }
 
 /// Modes of which LinuxCNC begins with another. Run from here has them; nobody else does.
 std::string other_words(const EntryReport& entry) {
   std::vector<std::string> words;
   for (const EntryMode& mode : entry.modes) {
-    if (!mode.is_kept || !mode.differs()) continue;
+    if (!mode.is_kept || !mode.differs() || is_of_tool(mode)) continue;
+    if (!mode.now.empty() && !is_shown(entry, mode)) continue;
     const std::string begins = mode.begins.empty() ? "" : trf(" instead of {}", mode.begins);
     words.push_back((mode.now.empty() ? trf("no {}", mode.begins) : mode.now + begins) +
                     said_in(mode.line));
@@ -76,12 +98,11 @@ std::string modes_text(const EntryReport& entry) {
              ? tr("          a start there misses nothing\n")
              : trf("          not done by a start there, so by hand before: {}\n", missed);
   out += trf("          in force there: {}\n", modes_words(entry));
-  if (const std::string other = other_words(entry); !other.empty()) {
-    out +=
-        trf("          other than LinuxCNC begins: {}; \"run from here\" reads that, a program "
-            "cut off there has to say it\n",
-            other);
-  }
+  const std::string other = other_words(entry);
+  out += other.empty() ? tr("          LinuxCNC begins in these modes, too\n")
+                       : trf("          LinuxCNC begins in others, and reads these first, which a "
+                             "program cut off there does not: {}\n",
+                             other);
   return out;
 }
 
