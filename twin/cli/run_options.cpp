@@ -9,6 +9,7 @@
 #include "base/translate.h"
 #include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
+#include "twin/cli/live_place.h"
 #include "twin/cli/option_reader.h"
 
 namespace kerf {
@@ -21,20 +22,28 @@ void read_lines(OptionReader& reader, LineRange& lines) {
   reader.fault("--from-line", trf("{} lies beyond --until-line {}", lines.from, lines.until));
 }
 
+/// --at: the machine itself says it.
+constexpr const char* kLive = "live";
+
 /// Nothing: --at does not say.
 std::optional<Vec3> read_place(OptionReader& reader) {
   const std::string& text = reader.text("--at");
-  if (text.empty()) return std::nullopt;
+  if (text.empty() || text == kLive) return std::nullopt;
   const std::optional<Vec3> place = three_lengths(text, reader.unit());
-  if (!place) reader.fault("--at", trf("'{}' is no place; X,Y,Z is (three lengths)", text));
+  if (!place) {
+    reader.fault("--at", trf("'{}' is no place; X,Y,Z is (three lengths), or live", text));
+  }
   return place;
 }
 
-EntryWish understand_entry(OptionReader& reader, const SessionOptions& session) {
+EntryWish understand_entry(OptionReader& reader, const SessionOptions& session,
+                           const Arguments& arguments, Diagnostics& diagnostics) {
   EntryWish wish;
   wish.at_mm = read_place(reader);
+  const bool is_live = reader.text("--at") == kLive;
   if (!reader.is_yes("--enter")) {
-    if (wish.at_mm) reader.fault("--at", tr("is for --enter; nothing else asks where it stands"));
+    if (wish.at_mm || is_live)
+      reader.fault("--at", tr("is for --enter; nothing else asks where it stands"));
     return wish;
   }
   wish.line = session.lines.from;
@@ -43,6 +52,7 @@ EntryWish understand_entry(OptionReader& reader, const SessionOptions& session) 
     reader.fault("--enter", tr("needs an NC file and kerf-interp: rs274 and listings begin at the "
                                "beginning alone"));
   }
+  if (is_live) wish.find_place = live_place_finder(arguments, diagnostics);
   return wish;
 }
 
@@ -130,7 +140,7 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
     reader.fault("--finding-png",
                  tr("the program comes from standard input, which cannot be read again"));
   }
-  request.entry = understand_entry(reader, request.session);
+  request.entry = understand_entry(reader, request.session, arguments, diagnostics);
   request.compare = understand_compare(reader, request.session.tools);
   // Tools may be named for what is left alone.
   if (request.compare.rest_mm > 0) request.session.tools_named = false;

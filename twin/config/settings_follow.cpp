@@ -124,9 +124,10 @@ constexpr std::array kFollowSettings{
     Setting{.option = "--at",
             .commands = kRun,
             .type = T::kText,
-            .help = tr_noop("with --enter: where the machine stands, in the program's coordinates "
-                            "(default: where the program has it)"),
-            .value_name = "X,Y,Z"},
+            .help = tr_noop("with --enter: where the machine stands, in the program's coordinates; "
+                            "live: by the configuration's source, as it is now (default: where the "
+                            "program has it)"),
+            .value_name = "X,Y,Z|live"},
     Setting{.option = "--until-line",
             .commands = kRun,
             .type = T::kWhole,

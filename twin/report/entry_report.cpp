@@ -49,6 +49,11 @@ std::string missed_words(const EntryReport& entry) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+bool is_compensated(const EntryReport& entry) {
+  const EntryMode* const mode = mode_of(entry, "compensation");
+  return entry.first.compensated || (mode != nullptr && mode->now != "G40");
+}
+
 /// S is told with M3 and M4; that nothing is done about overrides and the like, not at all.
 bool is_shown(const EntryReport& entry, const EntryMode& mode) {
   const std::string_view name = mode.name;
@@ -154,8 +159,13 @@ std::string entry_text(const EntryReport& entry) {
   std::string out =
       trf("start     at line {}, {} into the program; the tool is then at {}\n", entry.line,
           duration_text(entry.before_s), place_words(entry.first.from_mm));
+  if (entry.live) {
+    out += trf("          the machine stands at {}, by {}, {:.1f} s ago{}\n",
+               place_words(entry.live->at_mm), entry.live->source, entry.live->age_s,
+               entry.live->tool >= 0 ? trf(", with tool {}", entry.live->tool) : "");
+  }
   out += modes_text(entry);
-  if (entry.first.compensated) {
+  if (is_compensated(entry)) {
     out +=
         tr("          G41 or G42 is in force there: LinuxCNC cannot begin in the middle of it\n");
   }
@@ -196,9 +206,13 @@ Json entry_json(const EntryReport& entry, const std::vector<std::string>& files)
            {"mist", m.mist},
            {"coolant_line", std::max(line_of(entry, "flood"), line_of(entry, "mist"))},
            {"feed_mm_per_min", rounded(m.feed_mm_per_min)},
-           {"compensated", m.compensated},
+           {"compensated", is_compensated(entry)},
            {"modes", modes_json(entry)}};
   if (entry.at_mm) out["at_mm"] = vector_json(*entry.at_mm);
+  if (entry.live) {
+    out["live"] = Json{{"source", entry.live->source}, {"age_s", rounded(entry.live->age_s)}};
+    if (entry.live->tool >= 0) out["live"]["tool"] = entry.live->tool;
+  }
   if (entry.drive) {
     out["drive"] = way_json(*entry.drive, files);
     out["drive"]["feed"] = entry.drive_is_feed;

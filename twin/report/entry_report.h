@@ -27,12 +27,21 @@ struct EarlierStart {
   bool changes_tool = false;  ///< M6 and what follows it is done there; else the tool is above all
 };
 
+/// Where the machine itself says that it stands.
+struct EntryLive {
+  std::string source;
+  Vec3 at_mm{0};  ///< of the program's tool, workpiece frame
+  double age_s = 0;
+  int tool = -1;  ///< in the spindle; -1: it does not say
+};
+
 struct EntryReport {
   std::uint32_t line = 0;
-  Motion first;                  ///< the program's own first motion from that line on
-  double before_s = 0;           ///< so much of the program comes before it
-  std::vector<EntryMode> modes;  ///< what is in force when it begins
-  std::optional<Vec3> at_mm;     ///< --at: where the machine stands
+  Motion first;                   ///< the program's own first motion from that line on
+  double before_s = 0;            ///< so much of the program comes before it
+  std::vector<EntryMode> modes;   ///< what is in force when it begins
+  std::optional<Vec3> at_mm;      ///< --at: where the machine stands
+  std::optional<EntryLive> live;  ///< who says so
   std::optional<EntryWay>
       drive;                   ///< as LinuxCNC goes from there; nothing: it stands where it should
   bool drive_is_feed = false;  ///< and cuts what is in the way

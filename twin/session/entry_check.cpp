@@ -38,6 +38,7 @@ bool moves(const Motion& m) {
 struct BegunAt {
   std::vector<Motion> motions;  ///< the first is the place where it begins
   ActiveModes modes;            ///< in force there
+  WorkpieceFrame work;          ///< of the motions
 };
 BegunAt begun_at(const SessionOptions& options, std::uint32_t line,
                  const std::optional<std::array<double, 9>>& there,
@@ -64,6 +65,7 @@ BegunAt begun_at(const SessionOptions& options, std::uint32_t line,
     diagnostics.insert(diagnostics.end(), said.begin(), said.end());
   }
   begun.modes = summary.modes;
+  begun.work = program->workpiece_frame();
   return begun;
 }
 
@@ -195,6 +197,21 @@ Finding contact_of(const EntryReport& report) {
   return finding;
 }
 
+/// Before anything is cut: a machine that does not answer is told of at once.
+bool ask_machine(const BegunAt& begun, const EntryWish& wish, std::stop_token stop,
+                 EntryReport& report, Diagnostics& diagnostics) {
+  if (!wish.find_place) return true;
+  const EntryFrame frame{begun.work, begun.motions.front().tool_offset_mm.z};
+  report.live = wish.find_place(frame, stop, diagnostics);
+  if (!report.live) return false;
+  report.at_mm = report.live->at_mm;
+  for (EntryMode& mode : report.modes) {
+    const bool is_tool = std::string_view(mode.name) == "tool";
+    if (is_tool && report.live->tool == report.first.tool) mode.is_kept = true;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWish& wish,
@@ -217,6 +234,8 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   report.first = own[1];
   report.first.from_mm = own[0].to_mm;
   report.modes = entry_modes(begun.modes, report.first);
+
+  if (!ask_machine(begun, wish, stop, report, diagnostics)) return std::nullopt;
 
   // What comes before the line.
   SessionOptions before = options;
@@ -257,15 +276,15 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   std::array<double, 9> there{};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    there[k] = wish.at_mm ? (*wish.at_mm)[i] : own[0].to_mm[i];
+    there[k] = report.at_mm ? (*report.at_mm)[i] : own[0].to_mm[i];
     there[3 + k] = own[0].to_abc_deg[k];
     there[6 + k] = own[0].to_uvw_mm[i];
   }
   plan.session.program.machine.there = there;
   const std::unique_ptr<Session> judging = Session::open(plan.session, diagnostics, outcome);
   if (!judging) return std::nullopt;
-  report.safe = safe_way(*judging, report.first, wish.at_mm, top_mm);
-  if (!wish.at_mm) return plan;
+  report.safe = safe_way(*judging, report.first, report.at_mm, top_mm);
+  if (!report.at_mm) return plan;
   const auto enough = [](const std::vector<Motion>& m) { return m.size() > kMostOfDrive; };
   // What the interpreter refuses there, an arc for one, the run itself tells.
   Diagnostics refused;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -15,10 +16,22 @@
 
 namespace kerf {
 
+/// What the program has at the line, by which a machine's positions become its coordinates.
+struct EntryFrame {
+  WorkpieceFrame work;
+  double tool_length_mm = 0;  ///< in force, along Z
+};
+
+/// Waits for the machine. Nothing, with diagnostics: it does not say, or not well; nothing without
+/// them: it was stopped.
+using EntryPlaceFinder =
+    std::function<std::optional<EntryLive>(const EntryFrame&, std::stop_token, Diagnostics&)>;
+
 struct EntryWish {
   std::uint32_t line = 0;  ///< 0: none is wanted
   /// Where the machine stands: X Y Z of the workpiece, mm. Nothing: where the program has it.
   std::optional<Vec3> at_mm;
+  EntryPlaceFinder find_place;  ///< not null: asks the machine itself instead
 };
 
 /// How the program is run from there, and what is known before it is.
