@@ -96,6 +96,7 @@ void merge(SceneUpdate* older, SceneUpdate newer) {
   replace_if(&older->fixtures, std::move(newer.fixtures));
   replace_if(&older->colors, std::move(newer.colors));
   replace_if(&older->picked, std::move(newer.picked));
+  replace_if(&older->entry, std::move(newer.entry));
   replace_if(&older->moment, std::move(newer.moment));
 }
 

@@ -375,6 +375,29 @@ struct PickedPoint {
   std::optional<double> deviation_mm;
 };
 
+/// A way of the tool before a start in the middle of the program.
+struct EntryWayShown {
+  std::vector<Vec3> points_mm;
+  bool is_clear = true;
+};
+
+/// A line before, at which it may be begun instead.
+struct EntryStartShown {
+  int line = 0;
+  double costs_s = 0.0;
+  bool changes_tool = false;  ///< Else the tool is above the workpiece there.
+};
+
+/// What a start at a line misses and meets.
+struct EntryAnswer {
+  int line = 0;          ///< 0: nothing is asked any more.
+  bool is_busy = false;  ///< It is being worked out.
+  std::string trouble;   ///< Why it cannot be told; else empty.
+  std::vector<std::string> text;
+  EntryWayShown safe, drive;  ///< By hand; as the machine would go by itself. May be empty.
+  std::vector<EntryStartShown> earlier;  ///< The nearest first.
+};
+
 /// Of a tool that the program uses, or that somebody described.
 struct JobTool {
   int number = 0;
@@ -394,8 +417,9 @@ struct ViewedJob {
   std::string command;              ///< The equal command line.
   /// Why what was asked for last is not shown; empty: it is.
   std::vector<std::string> faults;
-  bool is_fixed = false;  ///< A log or a machine: the command is there, the fields are not.
-  bool can_open = true;   ///< OpenCommand is obeyed.
+  bool is_fixed = false;   ///< A log or a machine: the command is there, the fields are not.
+  bool can_open = true;    ///< OpenCommand is obeyed.
+  bool can_enter = false;  ///< EntryCommand is obeyed.
   /// Of a part that is made in several setups: their names, in order. Empty: it is one program.
   std::vector<std::string> setups;
   std::size_t setup = 0;  ///< The one that is shown, from 0.
@@ -457,6 +481,7 @@ struct SceneUpdate {
   std::shared_ptr<const SceneMachine> fixtures;
   std::shared_ptr<const CutColors> colors;    ///< The answer to a ColorCommand.
   std::shared_ptr<const PickedPoint> picked;  ///< The answer to a PickCommand.
+  std::shared_ptr<const EntryAnswer> entry;   ///< The answer to an EntryCommand.
   std::shared_ptr<const Moment> moment;
 };
 

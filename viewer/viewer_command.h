@@ -76,6 +76,11 @@ struct DrawModeCommand {
 struct PickCommand {
   Vec3 point_mm{0.0};
 };
+/// What a start of the machine at that line of the main program would miss and meet. The answer is
+/// SceneUpdate::entry.
+struct EntryCommand {
+  int line = 1;
+};
 /// Another program instead of this one, or a log to be replayed.
 struct OpenCommand {
   std::string path;
@@ -98,8 +103,8 @@ using ViewerCommand =
     std::variant<PlayCommand, PauseCommand, StopCommand, SpeedCommand, StepBlockCommand,
                  SeekLineCommand, RunToLineCommand, SeekTimeCommand, SeekEndCommand,
                  NextToolCommand, NextFindingCommand, SeekFindingCommand, BreakpointCommand,
-                 DetailCommand, ColorCommand, DrawModeCommand, PickCommand, OpenCommand, JobCommand,
-                 SetupCommand, ReadAgainCommand, CloseCommand>;
+                 DetailCommand, ColorCommand, DrawModeCommand, PickCommand, EntryCommand,
+                 OpenCommand, JobCommand, SetupCommand, ReadAgainCommand, CloseCommand>;
 
 inline constexpr double kMinSpeed = 0.1;
 inline constexpr double kMaxSpeed = 1000.0;

@@ -49,7 +49,8 @@ ViewWork::ViewWork(std::optional<Arguments> arguments, ViewRequest request, Scen
       stop_(stop),
       replay_(std::move(replay)),
       setups_(std::move(setups)),
-      speed_(request_.speed) {}
+      speed_(request_.speed),
+      entries_(mailbox) {}
 
 int ViewWork::run() {
   if (has_program()) {
@@ -257,9 +258,15 @@ void ViewWork::replace_view(std::unique_ptr<LoadedProgram> loaded) {
     mailbox_.publish(std::move(update));
   }
   has_machine_ = shown.machine != nullptr;
+  entries_.forget();
   view_.reset();  // its keyframes first
   view_ = std::make_unique<PlayerView>(std::move(loaded->player), request_.player, std::move(shown),
                                        mailbox_, commands_);
+  view_->answer_entries_by([this](int line) {
+    if (!can_enter()) return;
+    entries_.ask(line, arguments_->options.text("PROGRAM"), arguments_->options,
+                 request_.run.units);
+  });
   for (ViewerCommand& command : waiting_) commands_.push(std::move(command));
   waiting_.clear();
   if (before) go_to(*before);
@@ -326,6 +333,14 @@ void ViewWork::describe(const LoadedProgram& loaded) {
   }
 }
 
+/// kerf-interp runs it alone, and of a part in several setups nobody has the workpiece between.
+bool ViewWork::can_enter() const {
+  if (!arguments_ || setups_ || !has_program()) return false;
+  const ProgramOptions& program = request_.run.session.program;
+  return program.interpreter != InterpreterChoice::kText &&
+         view_kind_of(program.path) == ViewKind::kProgram && !program.path.ends_with(".canon");
+}
+
 void ViewWork::publish_job() {
   if (!arguments_) return;
   const WrittenOptions& options = arguments_->options;
@@ -337,6 +352,7 @@ void ViewWork::publish_job() {
   if (setups_ && job_.stock == setups_->carried_blank()) job_.stock.clear();
   job_.cell = options.text("--cell");
   job_.model = options.text("--model");
+  job_.can_enter = can_enter();
   job_.command = command_line(setups_ ? setups_->job_arguments(*arguments_) : *arguments_);
   job_.models = {"auto"};
   for (const StockModelRow& row : stock_models()) job_.models.emplace_back(row.name);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/cli/entry_ask.h"
 #include "twin/cli/file_watch.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/view_load.h"
@@ -68,6 +69,7 @@ class ViewWork {
   void watch_inputs();
   void describe(const LoadedProgram& loaded);
   void publish_job();
+  bool can_enter() const;
   void tell(const std::string& notice);
   void announce(const LoadProgress& progress);
   void watch_commands();
@@ -93,6 +95,7 @@ class ViewWork {
   Diagnostics diagnostics_;  ///< of the last reading
   Outcome outcome_ = Outcome::kFailed;
   Clock::time_point announced_{};
+  EntryAsk entries_;
   std::vector<ViewerCommand> waiting_;  ///< for what is shown next
 };
 

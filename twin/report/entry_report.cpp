@@ -17,6 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kEarlierShown = 3;
+/// Labels of the summary, in any language.
+constexpr std::size_t kLabelColumns = 10;
 
 std::string place_words(const Vec3& p) {
   return fmt::format("X{:.2f} Y{:.2f} Z{:.2f} mm", p.x, p.y, p.z);
@@ -190,6 +192,23 @@ std::string entry_text(const EntryReport& entry) {
   return out;
 }
 
+namespace {
+
+/// As for the page of text, but for what stands before it there.
+Json text_lines(const EntryReport& entry) {
+  Json lines = Json::array();
+  const std::string text = entry_text(entry);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::size_t begin = at + kLabelColumns;
+    lines.push_back(begin < end ? text.substr(begin, end - begin) : text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
 Json entry_json(const EntryReport& entry, const std::vector<std::string>& files) {
   const Motion& m = entry.first;
   Json out{{"line", entry.line},
@@ -225,6 +244,7 @@ Json entry_json(const EntryReport& entry, const std::vector<std::string>& files)
                            {"changes_tool", start.changes_tool}});
   }
   out["earlier"] = std::move(earlier);
+  out["text"] = text_lines(entry);
   return out;
 }
 

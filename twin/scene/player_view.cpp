@@ -129,6 +129,9 @@ bool PlayerView::obey(const ViewerCommand& command) {
           scene_.set_colors(c, player_.removed_mm3());
         if constexpr (std::is_same_v<Command, PickCommand>)
           scene_.pick(c.point_mm, *player_.state());
+        if constexpr (std::is_same_v<Command, EntryCommand>) {
+          if (on_entry_) on_entry_(c.line);
+        }
         if constexpr (std::is_same_v<Command, OpenCommand> || std::is_same_v<Command, JobCommand> ||
                       std::is_same_v<Command, SetupCommand> ||
                       std::is_same_v<Command, ReadAgainCommand>) {

@@ -32,6 +32,11 @@ class PlayerView {
   void run(std::stop_token stop, std::optional<double> speed = std::nullopt,
            const std::function<bool()>& is_over = {});
 
+  /// Who answers an EntryCommand, from within run(); without it none is.
+  void answer_entries_by(std::function<void(int line)> on_entry) {
+    on_entry_ = std::move(on_entry);
+  }
+
   Player& player() { return player_; }
   /// The OpenCommand, JobCommand, SetupCommand or ReadAgainCommand that ended run(); none: another
   /// reason did.
@@ -69,6 +74,7 @@ class PlayerView {
   std::vector<SourceRef> breakpoints_;
   std::shared_ptr<const PlayerState> state_;
   std::optional<ViewerCommand> asked_;
+  std::function<void(int)> on_entry_;
   std::vector<ViewerCommand> lasting_;
   std::shared_ptr<const Moment> moment_ = std::make_shared<Moment>();
   bool is_started_ = false;

@@ -234,6 +234,10 @@ class FileView {
       scroll_.follows = true;
       context_.commands->push(RunToLineCommand{is_main() ? "" : file_.path(), line});
     }
+    const bool can_enter = context_.shown.job && context_.shown.job->can_enter;
+    if (can_enter && is_main() && line > 1 && ImGui::MenuItem(context_.word(Text::kBeginHere))) {
+      context_.commands->push(EntryCommand{line});
+    }
     const Text text = has_breakpoint(line) ? Text::kClearBreakpoint : Text::kSetBreakpoint;
     if (ImGui::MenuItem(context_.word(text))) toggle_breakpoint(line);
     ImGui::EndPopup();

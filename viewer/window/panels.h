@@ -28,7 +28,7 @@
 
 namespace kerf {
 
-/// The values shown now; never null but `curves`, `picked`, `draw_mode` and `job`.
+/// The values shown now; never null but `curves`, `picked`, `entry`, `draw_mode` and `job`.
 struct ShownValues {
   std::shared_ptr<const SceneSetup> setup = std::make_shared<SceneSetup>();
   std::shared_ptr<const FindingList> findings = std::make_shared<FindingList>();
@@ -37,6 +37,7 @@ struct ShownValues {
   std::shared_ptr<const ProgramCurves> curves;
   std::shared_ptr<const Moment> moment = std::make_shared<Moment>();
   std::shared_ptr<const PickedPoint> picked;
+  std::shared_ptr<const EntryAnswer> entry;  ///< Never null while PanelState::shows_entry.
   std::shared_ptr<const DrawAnswer> draw_mode;
   std::shared_ptr<const ViewedJob> job;  ///< Null: nothing else can be shown here.
   std::chrono::steady_clock::time_point moment_came{};
@@ -130,6 +131,7 @@ struct PanelState {
   bool shows_help = false;
   bool shows_first_keys = false;
   bool asks_for_line = false;
+  bool shows_entry = false;  ///< What a start in the middle would miss.
   int asked_line = 1;
   int first_line = 1;  ///< For ColorBy::kLineRange.
   int last_line = 1;
@@ -191,6 +193,9 @@ void draw_code_panel(const PanelContext& context, glm::vec2 window_px, const Pan
 void draw_help(const PanelContext& context, glm::vec2 window_px);
 /// Over the picture; takes no clicks.
 void draw_first_keys(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
+void draw_entry(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
+/// Over the picture, as draw_inspection().
+void draw_entry_way(const PanelContext& context, const Projection& projection, glm::vec2 corner_px);
 void draw_line_question(const PanelContext& context, glm::vec2 window_px);
 /// Shows the list, beginning in the folder of the program, of the last one, or where kerf runs.
 void open_file_choice(const ShownValues& shown, const ViewSettings& settings, FileChoice* files);

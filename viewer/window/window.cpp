@@ -252,6 +252,7 @@ void Window::Impl::on_key(int key, int scancode, int action, int mods) {
   if (key == GLFW_KEY_ESCAPE) {
     state_.shows_help = false;
     state_.asks_for_line = false;
+    state_.shows_entry = false;
     state_.files.is_open = false;
     state_.picture.is_open = false;
     wants_picture_ = false;

@@ -160,6 +160,11 @@ void Window::Impl::apply(const SceneUpdate& update) {
   if (update.clears) shown_.curves.reset();
   if (update.curves) shown_.curves = update.curves;
   if (update.picked) shown_.picked = update.picked;
+  if (update.entry) {
+    shown_.entry = update.entry;
+    state_.shows_entry = update.entry->line > 0;
+    touched();
+  }
   if (update.moment) {
     // Another file comes to the front, which takes Dear ImGui more than one frame.
     if (update.moment->file != shown_.moment->file) touched();
@@ -392,6 +397,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
                              .commands = &commands_,
                              .measures = measures};
   draw_inspection(context, projection_, area_top_px_);
+  if (state_.shows_entry) draw_entry_way(context, projection_, area_top_px_);
   draw_code_panel(context, display, room);
   draw_info_panel(context, display, room);
   draw_toolbar(context, display, room);
@@ -401,6 +407,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
   if (state_.shows_first_keys) draw_first_keys(context, display, room);
   if (state_.shows_help) draw_help(context, display);
   if (state_.files.is_open) draw_file_choice(context, display);
+  if (state_.shows_entry) draw_entry(context, display, room);
   if (state_.asks_for_line) draw_line_question(context, display);
   if (state_.picture.is_open) draw_picture_choice(context, display);
   if (state_.picture.is_accepted) accept_picture();
