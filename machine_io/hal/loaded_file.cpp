@@ -26,7 +26,7 @@ void LoadedFile::wait(std::chrono::milliseconds patience) {
     Result<HalChild> started = HalChild::start(executable_, arguments);
     if (started) child_ = std::move(*started);
     retry_at_ = Clock::now() + kRetry;
-    line_.clear();
+    lines_.forget();
   }
   std::array<pollfd, 2> waits{{{child_ ? child_->records_fd() : -1, POLLIN, 0},
                                {child_ ? child_->messages_fd() : -1, POLLIN, 0}}};
@@ -44,20 +44,10 @@ void LoadedFile::take_lines() {
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (got <= 0) {
     child_.reset();
-    path_.reset();
-    line_.clear();  // what it had begun to say is not the next one's
+    lines_.forget();
     return;
   }
-  constexpr std::string_view kProgram = "program ";
-  constexpr std::size_t kLongestLine = 4096;
-  for (const char letter : std::string_view(bytes.data(), static_cast<std::size_t>(got))) {
-    if (letter != '\n') {
-      if (line_.size() < kLongestLine) line_.push_back(letter);
-      continue;
-    }
-    if (line_.starts_with(kProgram)) path_ = line_.substr(kProgram.size());
-    line_.clear();
-  }
+  lines_.take({bytes.data(), static_cast<std::size_t>(got)});
 }
 
 }  // namespace kerf

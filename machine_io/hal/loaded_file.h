@@ -6,6 +6,7 @@
 #include <string>
 
 #include "machine_io/hal/hal_child.h"
+#include "machine_io/hal/status_lines.h"
 
 namespace kerf {
 
@@ -21,7 +22,7 @@ class LoadedFile {
   /// Waits for news, at most so long.
   void wait(std::chrono::milliseconds patience);
   /// Nothing: no LinuxCNC runs, or it has not answered yet. Empty: it has no program.
-  const std::optional<std::string>& path() const { return path_; }
+  const std::optional<std::string>& path() const { return lines_.program(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -31,8 +32,7 @@ class LoadedFile {
   std::string nml_file_;
   std::optional<HalChild> child_;
   Clock::time_point retry_at_{};
-  std::string line_;  ///< that is not at its end
-  std::optional<std::string> path_;
+  StatusLines lines_;
 };
 
 /// Beside this executable, in ../lib/kerf beside it, or in PATH; empty: it is not there.

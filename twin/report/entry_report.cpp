@@ -155,12 +155,13 @@ Json way_json(const EntryWay& way, const std::vector<std::string>& files) {
       {"clear", way.clear()}, {"points_mm", std::move(points)}, {"findings", std::move(found)}};
 }
 
-}  // namespace
-
-std::string entry_text(const EntryReport& entry) {
+std::string before_starts(const EntryReport& entry) {
   std::string out =
       trf("start     at line {}, {} into the program; the tool is then at {}\n", entry.line,
           duration_text(entry.before_s), place_words(entry.first.from_mm));
+  if (const SourceRef at = entry.first.source; at.file == 0 && at.line < entry.line) {
+    out += trf("          LinuxCNC begins at line {} then: a loop leads back there\n", at.line);
+  }
   if (entry.live) {
     out += trf("          the machine stands at {}, by {}, {:.1f} s ago{}\n",
                place_words(entry.live->at_mm), entry.live->source, entry.live->age_s,
@@ -182,6 +183,13 @@ std::string entry_text(const EntryReport& entry) {
     out += trf("          by hand before it, G0 {}: {}\n", steps_words(entry.safe),
                way_words(entry.safe));
   }
+  return out;
+}
+
+}  // namespace
+
+std::string entry_text(const EntryReport& entry) {
+  std::string out = before_starts(entry);
   for (std::size_t i = 0; i < std::min(entry.earlier.size(), kEarlierShown); ++i) {
     const EarlierStart& start = entry.earlier[i];
     out += start.changes_tool ? trf("          or at line {}, the tool change: {} more\n",
@@ -194,10 +202,10 @@ std::string entry_text(const EntryReport& entry) {
 
 namespace {
 
-/// As for the page of text, but for what stands before it there.
+/// As in the page of text, but for the column of labels, and for where to begin instead.
 Json text_lines(const EntryReport& entry) {
   Json lines = Json::array();
-  const std::string text = entry_text(entry);
+  const std::string text = before_starts(entry);
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::size_t begin = at + kLabelColumns;
@@ -227,6 +235,7 @@ Json entry_json(const EntryReport& entry, const std::vector<std::string>& files)
            {"feed_mm_per_min", rounded(m.feed_mm_per_min)},
            {"compensated", is_compensated(entry)},
            {"modes", modes_json(entry)}};
+  out["first_line"] = m.source.line;
   if (entry.at_mm) out["at_mm"] = vector_json(*entry.at_mm);
   if (entry.live) {
     out["live"] = Json{{"source", entry.live->source}, {"age_s", rounded(entry.live->age_s)}};

@@ -17,7 +17,7 @@ void draw_starts(const PanelContext& context, const EntryAnswer& entry) {
     const std::string label =
         fmt::format("{} {}: {}, +{}", context.word(Text::kLine), start.line,
                     context.word(start.changes_tool ? Text::kToolChange : Text::kAboveWorkpiece),
-                    age_text(start.costs_s));
+                    clock_text(start.costs_s));
     if (!ImGui::Button(label.c_str())) continue;
     context.state->code.follows = true;
     context.commands->push(SeekLineCommand{"", start.line});
