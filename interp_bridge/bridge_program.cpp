@@ -419,6 +419,7 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   feeding.diameters = std::move(diameters);
   feeding.max_commands = command_limit(options_, survey_.lines);
   feeding.frame = &frame_;
+  feeding.work = options_.machine.work;
   feeding.lengths.axes = static_cast<unsigned>(options_.machine.length_axes);
   feeding.lengths.lengths = known_lengths(tools_, feeding.lengths.axes);
   feeding.lengths.calls = options_.machine.tool_lengths ? ToolLengthSetup::Calls::kTrue

@@ -60,6 +60,7 @@ MotionFeeder::MotionFeeder(MotionFeederOptions options, const MotionSink& sink,
       fold_(options_.tool_by_index),
       materials_(options_.torch.materials) {
   fold_.set_lengths(options_.lengths);
+  if (options_.work) fold_.state_work(*options_.work);
   start_fold();
   const TorchRun& torch = options_.torch;
   fold_.set_filter({torch.qtplasmac && !torch.text.is_filtered, torch.inch_machine});

@@ -43,6 +43,7 @@ struct MotionFeederOptions {
   /// Written before the first motion that moves is handed over, and again where an axis is placed
   /// under another offset than that. May be null.
   WorkpieceFrame* frame = nullptr;
+  std::optional<WorkpieceFrame> work;  ///< of MotionFold::state_work
   /// What is known of a torch machine. Without `torch.qtplasmac` its materials do not count.
   TorchRun torch;
   SignalOptions signals;

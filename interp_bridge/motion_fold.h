@@ -96,6 +96,10 @@ class MotionFold {
   /// machine frame, mm and degrees), so that the first motion has a start.
   void stand_at(const std::array<double, 9>& machine_position) { stands_at_ = machine_position; }
 
+  /// Before the first motion: the workpiece frame, where it is not that of the first motion, since
+  /// others came before it.
+  void state_work(const WorkpieceFrame& work) { stated_work_ = work; }
+
   /// Before the first command, instead: where the machine stands is not known in X, Y, Z (bits 0 to
   /// 2 of `axes`). The interpreter takes it to be at `machine_position`, so that its numbers can be
   /// compared. An axis is known again after a block in G90 that names it, or moves it all the same
@@ -276,6 +280,7 @@ class MotionFold {
   Frame frame_;
   Frame work_;  ///< the workpiece frame, once fixed
   bool work_fixed_ = false;
+  std::optional<WorkpieceFrame> stated_work_;
   bool same_frame_ = true;  ///< frame_ == work_: numbers pass unchanged
   double turn_cos_ = 1;     ///< of frame_.rotation - work_.rotation
   double turn_sin_ = 0;

@@ -82,6 +82,18 @@ void MotionFold::fix_workpiece_frame() {
   work_ = frame_;
   work_fixed_ = true;
   same_frame_ = true;
+  if (stated_work_ && workpiece_frame() != *stated_work_) {
+    work_ = Frame{};
+    work_.g5x_mm = stated_work_->g5x_mm;
+    work_.g92_mm = stated_work_->g92_mm;
+    work_.g5x_abc_deg = stated_work_->offset_abc_deg;
+    work_.g5x_uvw_mm = stated_work_->offset_uvw_mm;
+    work_.rotation_deg = stated_work_->rotation_deg;
+  }
+  if (stated_work_) {
+    placed_ = 0b111;  // X Y Z, by what came before
+    frame_changed();
+  }
   if (!stands_at_) return;
   height_said_ = true;
   const std::array<double, 9>& at = *stands_at_;

@@ -77,8 +77,11 @@ struct InterpreterSetup {
   /// The program is begun at this line, as LinuxCNC's "run from here" does it: what comes before is
   /// read, and not done. kerf-interp only. 0: it is run from its beginning.
   std::uint32_t first_line = 0;
-  /// Where the machine stands then: X Y Z A B C U V W of the workpiece, mm and degrees. Axes that
-  /// the line does not name stay there. Nothing: where the program would be.
+  /// With first_line: the workpiece frame, which the motions before that line have fixed. Nothing:
+  /// it is that of the first motion from there on.
+  std::optional<WorkpieceFrame> work;
+  /// Where the machine stands then: X Y Z A B C U V W of the program there, mm and degrees. Axes
+  /// that the line does not name stay there. Nothing: where the program would be.
   std::optional<std::array<double, 9>> there;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/translate.h"
 #include "twin/program/session_parts.h"
@@ -42,11 +43,13 @@ struct BegunAt {
 };
 BegunAt begun_at(const SessionOptions& options, std::uint32_t line,
                  const std::optional<std::array<double, 9>>& there,
+                 const std::optional<WorkpieceFrame>& work,
                  const std::function<bool(const std::vector<Motion>&)>& is_enough,
                  std::stop_token stop, Diagnostics& diagnostics) {
   ProgramOptions from = options.program;
   from.machine.first_line = line;
   from.machine.there = there;
+  from.machine.work = work;
   const std::unique_ptr<Program> program = Program::open(from, diagnostics);
   BegunAt begun;
   std::vector<Motion>& motions = begun.motions;
@@ -67,6 +70,44 @@ BegunAt begun_at(const SessionOptions& options, std::uint32_t line,
   begun.modes = summary.modes;
   begun.work = program->workpiece_frame();
   return begun;
+}
+
+/// The frame in which workpiece and program are the same: that of the program's first motions,
+/// whatever offset is in force later.
+WorkpieceFrame first_frame(const SessionOptions& options, std::stop_token stop) {
+  Diagnostics said;  // by the run
+  const std::unique_ptr<Program> program = Program::open(options.program, said);
+  if (!program) return {};
+  program->run(
+      [](std::span<const Motion> batch) {
+        return std::none_of(batch.begin(), batch.end(),
+                            [](const Motion& m) { return moves(m) && m.unknown_to == 0; });
+      },
+      stop, said);
+  return program->workpiece_frame();
+}
+
+Vec3 turned(const Vec3& v, double degrees) {
+  const double angle = degrees * (std::numbers::pi / 180);
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+}
+
+/// A place of the workpiece (X Y Z A B C U V W) in the coordinates of a program whose offsets are
+/// `here`.
+std::array<double, 9> program_place(const std::array<double, 9>& place, const WorkpieceFrame& work,
+                                    const WorkpieceFrame& here) {
+  if (work == here) return place;
+  const Vec3 at{place[0], place[1], place[2]};
+  const Vec3 machine = turned(at + work.g92_mm, work.rotation_deg) + work.g5x_mm;
+  const Vec3 p = turned(machine - here.g5x_mm, -here.rotation_deg) - here.g92_mm;
+  std::array<double, 9> out{p.x, p.y, p.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int axis = static_cast<int>(i);
+    out[3 + i] = place[3 + i] + work.offset_abc_deg[i] - here.offset_abc_deg[i];
+    out[6 + i] = place[6 + i] + work.offset_uvw_mm[axis] - here.offset_uvw_mm[axis];
+  }
+  return out;
 }
 
 /// What comes before the line: where what is in force was said, and where it could be begun.
@@ -223,7 +264,13 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   report.at_mm = wish.at_mm;
 
   const auto has_moved = [](const std::vector<Motion>& m) { return m.size() >= 2; };
-  const BegunAt begun = begun_at(options, wish.line, std::nullopt, has_moved, stop, diagnostics);
+  BegunAt begun =
+      begun_at(options, wish.line, std::nullopt, std::nullopt, has_moved, stop, diagnostics);
+  const WorkpieceFrame here = begun.work;
+  const WorkpieceFrame work = first_frame(options, stop);
+  if (!has_error(diagnostics) && here != work) {
+    begun = begun_at(options, wish.line, std::nullopt, work, has_moved, stop, diagnostics);
+  }
   const std::vector<Motion>& own = begun.motions;
   if (has_error(diagnostics)) return std::nullopt;
   if (own.size() < 2) {
@@ -280,7 +327,9 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
     there[3 + k] = own[0].to_abc_deg[k];
     there[6 + k] = own[0].to_uvw_mm[i];
   }
+  there = program_place(there, work, here);
   plan.session.program.machine.there = there;
+  plan.session.program.machine.work = work;
   const std::unique_ptr<Session> judging = Session::open(plan.session, diagnostics, outcome);
   if (!judging) return std::nullopt;
   report.safe = safe_way(*judging, report.first, report.at_mm, top_mm);
@@ -289,7 +338,7 @@ std::optional<EntryPlan> plan_entry(const SessionOptions& options, const EntryWi
   // What the interpreter refuses there, an arc for one, the run itself tells.
   Diagnostics refused;
   const std::vector<Motion> driven =
-      begun_at(options, wish.line, there, enough, stop, refused).motions;
+      begun_at(options, wish.line, there, work, enough, stop, refused).motions;
   if (driven.size() < 2) return plan;
   const std::vector<Motion> drive = drive_of(driven, own[0].to_mm);
   if (drive.empty()) return plan;
