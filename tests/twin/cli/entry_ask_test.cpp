@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
-#include <thread>
+#include <string>
 
 namespace kerf {
 namespace {
@@ -51,28 +49,6 @@ TEST(EntryAnswer, OfNoReportOrHalfAOneIsNone) {
   for (std::size_t length = 0; length < whole.size(); length += 7) {
     EXPECT_FALSE(entry_answer(28, whole.substr(0, length), LengthUnit::kMm)) << length;
   }
-}
-
-TEST(EntryAsk, SaysAtOnceThatItIsAtItAndThenWhatIsWrong) {
-  SceneMailbox mailbox;
-  EntryAsk asks(mailbox);
-  asks.ask(7, "/nowhere/part.ngc", {}, LengthUnit::kMm);
-  std::unique_ptr<SceneUpdate> first = mailbox.take();
-  ASSERT_TRUE(first && first->entry);
-  EXPECT_EQ(first->entry->line, 7);
-  // What is started is this test, which is no kerf: it has no report to give.
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  std::shared_ptr<const EntryAnswer> last = first->entry;
-  while (last->is_busy && std::chrono::steady_clock::now() < until) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    if (const auto update = mailbox.take(); update && update->entry) last = update->entry;
-  }
-  EXPECT_FALSE(last->is_busy);
-  EXPECT_NE(last->trouble, "");
-  asks.forget();
-  const auto gone = mailbox.take();
-  ASSERT_TRUE(gone && gone->entry);
-  EXPECT_EQ(gone->entry->line, 0);
 }
 
 }  // namespace
