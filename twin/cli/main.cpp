@@ -205,14 +205,17 @@ int run(int argc, char** argv) {
   speak_language(app, "kerf " + version_text());
   app.footer(std::string(examples_of_kerf()) + "\n" + tr(kExitCodes));
   app.allow_extras();
-  const Commands commands(app, std::vector<std::string>(argv, argv + argc));
+  std::vector<std::string> words = with_bare_options(std::vector<std::string>(argv, argv + argc));
+  const Commands commands(app, words);
   for (CLI::App* const command : commands.all) {
     for (CLI::Option* const option : command->get_options({})) {
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
     }
   }
   try {
-    app.parse(argc, argv);
+    words.erase(words.begin(), words.begin() + std::min(argc, 1));
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app.parse(std::move(words));
   } catch (const CLI::Success& success) {
     std::ostringstream text;
     const int code = app.exit(success, text, text);  // --help, --version
