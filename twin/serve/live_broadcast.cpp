@@ -173,6 +173,7 @@ void LiveBroadcast::make_patches() {
   for (const auto& patch : feeder_.make_until(Clock::now() + kSlice)) {
     scene_.set_patch(patch->tile, packed(*patch));
   }
+  if (!feeder_.behind()) scene_.set_whole(true);
 }
 
 void LiveBroadcast::put_setup() {

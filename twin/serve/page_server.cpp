@@ -104,7 +104,7 @@ std::uint64_t number_of(MHD_Connection* connection, const char* name) {
 }
 
 MHD_Result answer_with(MHD_Connection* connection, unsigned status, const char* type,
-                       std::string body) {
+                       std::string body, bool is_gzip = false) {
   auto* const kept = new std::string(std::move(body));
   MHD_Response* const response = MHD_create_response_from_buffer_with_free_callback_cls(
       kept->size(), kept->data(), [](void* text) { delete static_cast<std::string*>(text); }, kept);
@@ -114,6 +114,7 @@ MHD_Result answer_with(MHD_Connection* connection, unsigned status, const char* 
   }
   for (const auto& [name, value] : kHeaders) MHD_add_response_header(response, name, value);
   MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, type);
+  if (is_gzip) MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_ENCODING, "gzip");
   if (status == MHD_HTTP_METHOD_NOT_ALLOWED) {
     MHD_add_response_header(response, MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
   }
@@ -186,7 +187,9 @@ struct PageServer::Impl {
       (*request)->has_waited = true;
       return MHD_YES;
     }
-    return answer_with(connection, MHD_HTTP_OK, "application/octet-stream", scene.answer(seen));
+    const bool as_gzip = takes_gzip(header_of(connection, MHD_HTTP_HEADER_ACCEPT_ENCODING));
+    return answer_with(connection, MHD_HTTP_OK, "application/octet-stream",
+                       scene.answer(seen, as_gzip), as_gzip);
   }
 
   /// Until something is new; false: something is.

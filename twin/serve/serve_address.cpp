@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <system_error>
@@ -110,6 +111,21 @@ bool is_authorized(std::string_view authorization, std::string_view token) {
                                      static_cast<unsigned char>(token[i]));
   }
   return differs == 0 && !token.empty();
+}
+
+bool takes_gzip(std::string_view accept_encoding) {
+  while (!accept_encoding.empty()) {
+    const std::size_t end = std::min(accept_encoding.find(','), accept_encoding.size());
+    std::string one;
+    for (const char c : accept_encoding.substr(0, end)) {
+      if (c != ' ' && c != '\t') one += c;
+    }
+    accept_encoding.remove_prefix(std::min(end + 1, accept_encoding.size()));
+    if (one != "gzip" && !one.starts_with("gzip;")) continue;
+    return one.find_first_not_of("0.", std::min(one.find("q=") + 2, one.size())) != one.npos ||
+           one.find("q=") == one.npos;
+  }
+  return false;
 }
 
 std::optional<std::uint64_t> read_seen_number(std::string_view text) {

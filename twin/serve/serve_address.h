@@ -40,6 +40,9 @@ std::string new_access_token();
 /// "Bearer TOKEN". Takes as long whatever is wrong with it.
 bool is_authorized(std::string_view authorization, std::string_view token);
 
+/// Of an Accept-Encoding: "gzip, deflate, br"; "gzip;q=0" does not.
+bool takes_gzip(std::string_view accept_encoding);
+
 /// A number in a request: up to 19 digits, no sign. None: it is not a number.
 std::optional<std::uint64_t> read_seen_number(std::string_view text);
 

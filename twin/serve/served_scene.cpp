@@ -28,6 +28,7 @@ void ServedScene::begin_anew() {
   ++version_;
   tiles_.clear();
   order_.clear();
+  is_whole_ = false;
   findings_.clear();
   finding_count_ = 0;
 }
@@ -53,12 +54,19 @@ void ServedScene::add_finding(std::string json) {
 }
 
 void ServedScene::set_patch(std::uint32_t tile, std::string bytes) {
+  GzipPiece piece = gzip_piece(bytes);
   const std::lock_guard lock(mutex_);
   Tile& kept = tiles_[tile];
   if (kept.number != 0) order_.erase(kept.number);
   kept.number = ++mesh_;
   kept.bytes = std::move(bytes);
+  kept.piece = std::move(piece);
   order_.emplace(kept.number, tile);
+}
+
+void ServedScene::set_whole(bool is_whole) {
+  const std::lock_guard lock(mutex_);
+  is_whole_ = is_whole;
 }
 
 void ServedScene::publish() {
@@ -77,27 +85,11 @@ bool ServedScene::has_news(const SeenByPage& seen) const {
   return seen.version < version_ || seen.mesh < mesh_;
 }
 
-std::string ServedScene::answer(const SeenByPage& said) {
-  const std::lock_guard lock(mutex_);
-  asked_at_ = Clock::now();
-  was_asked_ = true;
-  const bool is_new = said.epoch != epoch_;
-  const SeenByPage seen = is_new ? SeenByPage{} : said;
-  std::string patches;
-  std::uint64_t mesh = std::max(seen.mesh, std::uint64_t{1});
-  const std::size_t most = seen.mesh <= 1 ? kMostFirst : kMostAnswer;
-  auto next = order_.upper_bound(mesh);
-  for (; next != order_.end(); ++next) {
-    const std::string& bytes = tiles_.at(next->second).bytes;
-    if (!patches.empty() && patches.size() + bytes.size() > most) break;
-    patches += bytes;
-    mesh = next->first;
-  }
-  const bool is_whole = next == order_.end();
-  if (is_whole) mesh = mesh_;
+std::string ServedScene::json_for(const SeenByPage& seen, std::uint64_t mesh,
+                                  bool is_whole) const {
   std::string json = fmt::format(
-      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings":[)",
-      epoch_, version_, mesh, is_whole, finding_count_);
+      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings":[)", epoch_,
+      version_, mesh, is_whole, finding_count_);
   for (std::size_t i = seen.findings; i < findings_.size(); ++i) {
     if (i > seen.findings) json += ',';
     json += findings_[i];
@@ -107,11 +99,40 @@ std::string ServedScene::answer(const SeenByPage& said) {
   if (!state_.empty()) json += ',' + state_;
   json += '}';
   while (json.size() % 4 != 0) json += ' ';
+  return json;
+}
+
+std::string ServedScene::answer(const SeenByPage& said, bool as_gzip) {
+  const std::lock_guard lock(mutex_);
+  asked_at_ = Clock::now();
+  was_asked_ = true;
+  const SeenByPage seen = said.epoch == epoch_ ? said : SeenByPage{};
+  const std::size_t most = seen.mesh <= 1 ? kMostFirst : kMostAnswer;
+  std::vector<const Tile*> tiles;
+  std::uint64_t mesh = std::max(seen.mesh, std::uint64_t{1});
+  std::size_t bytes = 0;
+  auto next = order_.upper_bound(mesh);
+  for (; next != order_.end(); ++next) {
+    const Tile& tile = tiles_.at(next->second);
+    bytes += as_gzip ? tile.piece.blocks.size() : tile.bytes.size();
+    if (!tiles.empty() && bytes > most) break;
+    tiles.push_back(&tile);
+    mesh = next->first;
+  }
+  const bool has_all = next == order_.end();
+  if (has_all) mesh = mesh_;
+  const std::string json = json_for(seen, mesh, has_all && is_whole_);
   std::string out = "KRF1";
   put_length(out, json.size());
   out += json;
-  out += patches;
-  return out;
+  if (!as_gzip) {
+    for (const Tile* tile : tiles) out += tile->bytes;
+    return out;
+  }
+  const GzipPiece head = gzip_piece(out);
+  std::vector<const GzipPiece*> pieces{&head};
+  for (const Tile* tile : tiles) pieces.push_back(&tile->piece);
+  return gzip_of(pieces);
 }
 
 bool ServedScene::is_watched() const {

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "twin/serve/gzip_pieces.h"
+
 namespace kerf {
 
 /// What a page has got already, by the numbers that came with it.
@@ -30,7 +32,7 @@ struct SeenByPage {
 class ServedScene {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Bytes of patches in one answer. Pages ask ten times a second, so that each gets less than a
+  /// Bytes of patches in one answer, compressed. Pages ask ten times a second, so that each gets less than a
   /// megabyte a second of what changes.
   static constexpr std::size_t kMostAnswer = 90'000;
   /// In the first answer to a page.
@@ -48,8 +50,10 @@ class ServedScene {
   void set_setup(std::string members);
   /// A finding as a JSON object.
   void add_finding(std::string json);
-  /// A packed() patch.
+  /// A packed() patch; compressed here, in the caller's thread.
   void set_patch(std::uint32_t tile, std::string bytes);
+  /// Whether all tiles of the workpiece have been set; begin_anew() says no.
+  void set_whole(bool is_whole);
   /// After a change, once for all that belong together: who waits is answered.
   void publish();
 
@@ -59,7 +63,8 @@ class ServedScene {
   /// of 4; then patches (packed_patch.h). The JSON: epoch, version, mesh, findings_count, is_whole
   /// (of the patches: no more are missing), findings (those that the page has not), the setup if it
   /// is new to it, and the state.
-  std::string answer(const SeenByPage& seen);
+  /// `as_gzip`: compressed (Content-Encoding: gzip).
+  std::string answer(const SeenByPage& seen, bool as_gzip);
 
   /// A page has asked within the last kWatched: else nobody need make patches.
   bool is_watched() const;
@@ -80,9 +85,12 @@ class ServedScene {
   struct Tile {
     std::uint64_t number = 0;
     std::string bytes;
+    GzipPiece piece;
   };
+  std::string json_for(const SeenByPage& seen, std::uint64_t mesh, bool is_whole) const;
   std::unordered_map<std::uint32_t, Tile> tiles_;
   std::map<std::uint64_t, std::uint32_t> order_;  ///< tiles by when they changed
+  bool is_whole_ = false;
   Clock::time_point asked_at_;
   bool was_asked_ = false;
   std::mutex listener_mutex_;

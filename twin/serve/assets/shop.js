@@ -13,9 +13,9 @@ let token = decodeURIComponent(location.hash.slice(1));
 // ---- drawing
 const kVertex = "attribute vec3 place; attribute vec3 normal; attribute float cut; uniform mat4 view; uniform vec3 low, size;"
   + "varying vec3 n; varying float c; void main() { n = normal; c = cut; gl_Position = view * vec4(low + size * place, 1.0); }";
-const kFragment = "precision highp float; varying vec3 n; varying float c; uniform vec3 eye; uniform vec4 color; uniform bool lit;"
+const kFragment = "precision highp float; varying vec3 n; varying float c; uniform vec3 eye, sun; uniform vec4 color; uniform bool lit;"
   + "void main() { if (!lit) { gl_FragColor = color; return; }"
-  + " vec3 m = normalize(n); float light = 0.42 + 0.5 * max(0.0, dot(m, eye)) + 0.16 * max(0.0, dot(m, normalize(vec3(-0.4, -0.6, 0.9))));"
+  + " vec3 m = normalize(n); float light = 0.36 + 0.34 * max(0.0, dot(m, eye)) + 0.38 * max(0.0, dot(m, sun));"
   + " gl_FragColor = vec4(mix(color.rgb, vec3(0.55, 0.66, 0.74), 0.6 * c) * light, color.a); }";
 const kPart = [0.72, 0.75, 0.78, 1], kTool = { cutter: [0.93, 0.55, 0.2, 1], shank: [0.6, 0.63, 0.66, 1],
   holder: [0.4, 0.44, 0.48, 1], spindle: [0.3, 0.33, 0.37, 0.9] };
@@ -34,7 +34,7 @@ function makeView(canvas) {
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) { console.error(gl.getProgramInfoLog(program)); return null; }
   gl.useProgram(program);
   const [aPlace, aNormal, aCut] = ["place", "normal", "cut"].map((name) => gl.getAttribLocation(program, name));
-  const [uView, uLow, uSize, uEye, uColor, uLit] = ["view", "low", "size", "eye", "color", "lit"].map((name) => gl.getUniformLocation(program, name));
+  const [uView, uLow, uSize, uEye, uSun, uColor, uLit] = ["view", "low", "size", "eye", "sun", "color", "lit"].map((name) => gl.getUniformLocation(program, name));
   for (const attribute of [aPlace, aNormal, aCut]) gl.enableVertexAttribArray(attribute);
   gl.enable(gl.DEPTH_TEST);
   const tiles = new Map();
@@ -97,9 +97,12 @@ function makeView(canvas) {
     gl.viewport(0, 0, width, height);
     gl.clearColor(0.914, 0.929, 0.941, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const m = matrix(width, height), eye = frame()[2];
+    const m = matrix(width, height), rows = frame(), eye = rows[2];
+    // From above and the left of who looks, so that faces differ from every side.
+    const sun = [0, 1, 2].map((i) => -0.45 * rows[0][i] + 0.75 * rows[1][i] + 0.5 * rows[2][i]);
     gl.uniformMatrix4fv(uView, false, m);
     gl.uniform3fv(uEye, eye);
+    gl.uniform3fv(uSun, sun);
     gl.uniform1i(uLit, 1);
     for (const tile of tiles.values()) if (tile.count) paint(tile, kPart);
     if (lines) {
@@ -120,6 +123,7 @@ function makeView(canvas) {
       gl.uniform1i(uLit, 1);
       gl.uniformMatrix4fv(uView, false, own);
       gl.uniform3fv(uEye, axes.map((axis) => dot(axis, eye)));
+      gl.uniform3fv(uSun, axes.map((axis) => dot(axis, sun)));
       for (const piece of tool) paint(piece.mesh, piece.color);
     }
   }
@@ -339,11 +343,12 @@ function take(buffer) {
   }
   Object.assign(seen, { epoch: news.epoch, version: news.version, mesh: news.mesh, findings: by("findings").children.length });
   document.body.dataset.answers = Number(document.body.dataset.answers || 0) + 1;
-  document.body.dataset.bytes = Number(document.body.dataset.bytes || 0) + bytes.length;
   document.body.dataset.whole = isWhole;
   showState();
 }
 
+// For tests: bytes on the wire.
+function countBytes(length) { document.body.dataset.bytes = Number(document.body.dataset.bytes || 0) + Number(length); }
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 async function follow() {
   while (true) {
@@ -355,7 +360,7 @@ async function follow() {
       const body = answer.ok ? await answer.arrayBuffer() : null;
       clearTimeout(timer);
       by("ask").hidden = answer.status !== 401;
-      if (body) { take(body); failures = 0; }
+      if (body) { take(body); failures = 0; countBytes(answer.headers.get("Content-Length")); }
       else { ++failures; await pause(1000); }
     } catch (error) {
       ++failures;
