@@ -13,9 +13,9 @@ import urllib.request
 
 
 class Browser:
-    """W3C WebDriver, as much as this needs."""
+    """W3C WebDriver, as much as these need."""
 
-    def __init__(self, profile):
+    def __init__(self, profile, *more_flags):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
@@ -24,7 +24,7 @@ class Browser:
         self.address = f"http://127.0.0.1:{port}"
         flags = ["--headless=new", "--disable-gpu", "--enable-unsafe-swiftshader", "--no-first-run", "--disable-sync",
                  "--disable-background-networking", "--disable-component-update", f"--user-data-dir={profile}",
-                 "--window-size=1300,1500"]
+                 "--window-size=1300,1500", *more_flags]
         if os.geteuid() == 0:
             flags.append("--no-sandbox")
         wanted = {"capabilities": {"alwaysMatch": {"goog:chromeOptions": {"args": flags},
@@ -51,6 +51,18 @@ class Browser:
 
     def run(self, script):
         return self.call(self.session + "/execute/sync", {"script": script, "args": []})
+
+    def new_window(self):
+        """Opens one more, and goes on in it."""
+        made = self.call(self.session + "/window/new", {"type": "window"})
+        self.go_to(made["handle"])
+        return made["handle"]
+
+    def window(self):
+        return self.call(self.session + "/window")
+
+    def go_to(self, handle):
+        self.call(self.session + "/window", {"handle": handle})
 
     def console(self):
         return self.call(self.session + "/se/log", {"type": "browser"})

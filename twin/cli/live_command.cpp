@@ -501,7 +501,10 @@ int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics
     page.emplace();
     Result<std::string> link = page->open(*request.serve);
     if (!link) {
-      print_diagnostics({fault(fmt::format("--serve: {}", link.error()))}, false);
+      Diagnostic d = fault(fmt::format("--serve: {}", link.error()));
+      d.hint =
+          tr("it must be an address of this computer and a port that nobody has; port 0 is any");
+      print_diagnostics({d}, false);
       return kExitFailure;
     }
     // Whoever is to look on needs it, --quiet or not.

@@ -82,7 +82,11 @@ int refuse_argument(const std::string& argument, const CLI::App& app, bool comma
   const std::string near = nearest_word(written, allowed);
   const bool is_of_run = app.get_name() == "job" && has_option(kRun, written);
   if (is_of_run) d.message += tr("; kerf run has it, for a single program");
-  if (!is_of_run && !near.empty()) d.message += trf("; did you mean {}?", near);
+  const bool is_beside_machine =
+      !is_of_run && has_option(kShadow, written) && has_option(kReplay, written);
+  if (is_beside_machine) d.message += tr("; kerf shadow and kerf replay have it");
+  if (!is_of_run && !is_beside_machine && !near.empty())
+    d.message += trf("; did you mean {}?", near);
   const std::string name = app.get_parent() ? "kerf " + app.get_name() : "kerf";
   d.hint = trf("{} --help lists what there is", name);
   kerf::print(stderr, "{}", to_string(d));

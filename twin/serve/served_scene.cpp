@@ -85,11 +85,10 @@ bool ServedScene::has_news(const SeenByPage& seen) const {
   return seen.version < version_ || seen.mesh < mesh_;
 }
 
-std::string ServedScene::json_for(const SeenByPage& seen, std::uint64_t mesh,
-                                  bool is_whole) const {
+std::string ServedScene::json_for(const SeenByPage& seen, std::uint64_t mesh, bool is_whole) const {
   std::string json = fmt::format(
-      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings":[)", epoch_,
-      version_, mesh, is_whole, finding_count_);
+      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings":[)",
+      epoch_, version_, mesh, is_whole, finding_count_);
   for (std::size_t i = seen.findings; i < findings_.size(); ++i) {
     if (i > seen.findings) json += ',';
     json += findings_[i];

@@ -32,8 +32,8 @@ struct SeenByPage {
 class ServedScene {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Bytes of patches in one answer, compressed. Pages ask ten times a second, so that each gets less than a
-  /// megabyte a second of what changes.
+  /// Bytes of patches in one answer, compressed. Pages ask ten times a second, so that each gets
+  /// less than a megabyte a second of what changes.
   static constexpr std::size_t kMostAnswer = 90'000;
   /// In the first answer to a page.
   static constexpr std::size_t kMostFirst = 400'000;

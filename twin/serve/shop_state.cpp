@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/translate.h"
+#include "base/units.h"
 #include "twin/findings/finding_json.h"
 #include "twin/live/live_text.h"
 #include "twin/report/shown_lengths.h"
@@ -43,12 +44,22 @@ class Rows {
   void add(const std::string& name, const std::string& value) {
     rows_.push_back({name, in_unit(value, unit_)});
   }
+  void add_as_it_is(const std::string& name, const std::string& value) {
+    rows_.push_back({name, value});
+  }
   ShopJson take() { return std::move(rows_); }
 
  private:
   LengthUnit unit_;
   ShopJson rows_ = ShopJson::array();
 };
+
+/// As many digits whatever the place: it changes ten times a second.
+std::string place_text(const Vec3& mm, LengthUnit unit) {
+  if (unit == LengthUnit::kMm) return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", mm.x, mm.y, mm.z);
+  const Vec3 inch = mm / kMmPerInch;
+  return fmt::format("X{:.4f} Y{:.4f} Z{:.4f}", inch.x, inch.y, inch.z);
+}
 
 ShopJson rows_of(const LiveStatus& status, const std::string& tool_name, LengthUnit unit) {
   const ToolState& place = status.place;
@@ -60,8 +71,7 @@ ShopJson rows_of(const LiveStatus& status, const std::string& tool_name, LengthU
     rows.add(tr("Time left"), time_left_text(status.remaining_s));
   }
   if (place.known) {
-    rows.add(tr("Position"), fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", place.tip_mm.x, place.tip_mm.y,
-                                         place.tip_mm.z));
+    rows.add_as_it_is(tr("Position"), place_text(place.tip_mm, unit));
   }
   if (place.tool >= 0) rows.add(tr("Tool"), fmt::format("T{} {}", place.tool, tool_name));
   if (status.feed_mm_per_min) {
