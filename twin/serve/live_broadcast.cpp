@@ -70,8 +70,8 @@ void LiveBroadcast::on_status(const LiveStatus& status) {
 }
 
 void LiveBroadcast::tell(std::string finding) {
-  scene_.add_finding(std::move(finding));
   const std::lock_guard lock(mutex_);
+  news_.findings.push_back(std::move(finding));
   has_news_ = true;
   arrived_.notify_one();
 }
@@ -156,6 +156,7 @@ void LiveBroadcast::take(News news) {
     status_ = std::move(news.status);
     status_at_ = news.status_at;
   }
+  for (std::string& finding : news.findings) scene_.add_finding(std::move(finding));
   if (!news.has_tool) return;
   cutter_ = std::move(news.cutter);
   tool_name_ = cutter_ ? tool_name_of(*cutter_) : std::string();

@@ -59,6 +59,7 @@ class LiveBroadcast final : public LiveObserver {
     std::shared_ptr<const StockModel> stock;
     std::optional<LiveStatus> status;
     Clock::time_point status_at;
+    std::vector<std::string> findings;  ///< finding_object()
     bool has_tool = false;
     std::shared_ptr<const Cutter> cutter;
   };
