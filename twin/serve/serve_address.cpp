@@ -25,7 +25,8 @@ std::optional<std::uint16_t> read_port(std::string_view text) {
 
 bool is_address(int family, const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
-  return inet_pton(family, host.c_str(), bytes.data()) == 1;
+  const bool is_all = host.find('\0') == host.npos;  // inet_pton() looks no farther
+  return is_all && inet_pton(family, host.c_str(), bytes.data()) == 1;
 }
 
 /// The port, and without it what is before its colon.

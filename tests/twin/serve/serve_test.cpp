@@ -41,6 +41,11 @@ TEST(ServeAddress, IsReadWithWhatIsMissingAsItIsForThisComputer) {
   }
 }
 
+TEST(ServeAddress, WhatStandsBehindANulCounts) {
+  EXPECT_FALSE(read_serve_address(std::string_view("1.2.3.4\0 evil", 13)));
+  EXPECT_FALSE(is_own_host(std::string_view("127.0.0.1\0.evil", 15)));
+}
+
 TEST(ServeAddress, LoopbackIsWhatNobodyElseReaches) {
   for (const char* text : {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1", "80"}) {
     EXPECT_TRUE(read_serve_address(text)->is_loopback()) << text;
