@@ -88,6 +88,8 @@ struct Setting {
   const char* refusal = "";       ///< of a word: "'{}' is no policy; allowed: {}". tr() shows it
   /// It takes no value; where it is written, this is it: "yes", "no".
   std::string_view flag{};
+  /// It may be written without a value; then it is this. No file is meant by it.
+  std::string_view fallback_if_bare{};
   bool repeatable = false;
   bool required = false;
   /// "--kerf|--beam": where the command line has one of these, the key does not count.
