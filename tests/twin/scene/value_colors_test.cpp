@@ -89,11 +89,13 @@ TEST_F(ValueColorsTest, WhatIsAboveALimitHasAColourOfItsOwn) {
   // The sound twin: below the limit nothing has it.
   wish_.spindle_power_kw = 5;
   const auto below = made(ColorBy::kPower);
-  for (const ColorLegendEntry& entry : below->legend) EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
+  for (const ColorLegendEntry& entry : below->legend)
+    EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
   // Nor has force a limit.
   note(first(), LoadKind::kForce, 1000);
   const auto force = made(ColorBy::kForce);
-  for (const ColorLegendEntry& entry : force->legend) EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
+  for (const ColorLegendEntry& entry : force->legend)
+    EXPECT_EQ(entry.range->kind, LegendRange::Kind::kWithin);
 }
 
 TEST_F(ValueColorsTest, StraightDownIsNoAngle) {
