@@ -161,7 +161,7 @@ std::optional<std::string> agent_error_of(const XmlElement& root) {
   return text.empty() ? std::string(tr("an error without a code")) : text.substr(0, 300);
 }
 
-Result<ProbeAnswer> parse_probe(std::string_view text) {
+Result<DevicesAnswer> parse_probe(std::string_view text) {
   Result<XmlElement> root = parse_xml(text);
   if (!root) return Error{root.error()};
   if (const std::optional<std::string> error = agent_error_of(*root)) return Error{*error};
@@ -170,7 +170,7 @@ Result<ProbeAnswer> parse_probe(std::string_view text) {
   }
   const Result<AgentHeader> header = read_agent_header(*root, false);
   if (!header) return Error{header.error()};
-  ProbeAnswer out;
+  DevicesAnswer out;
   out.header = *header;
   if (const XmlElement* const devices = root->child("Devices")) {
     for (const XmlElement& one : devices->children) {
@@ -181,7 +181,7 @@ Result<ProbeAnswer> parse_probe(std::string_view text) {
   return out;
 }
 
-Result<const DeviceModel*> choose_device(const ProbeAnswer& probe, const std::string& wanted) {
+Result<const DeviceModel*> choose_device(const DevicesAnswer& probe, const std::string& wanted) {
   std::string names;
   for (const DeviceModel& device : probe.devices) {
     if (!wanted.empty() && (device.name == wanted || device.uuid == wanted)) return &device;

@@ -59,16 +59,16 @@ struct DeviceModel {
   std::optional<LinuxcncKinematics> kinematics;
 };
 
-struct ProbeAnswer {
+struct DevicesAnswer {
   AgentHeader header;
   std::vector<DeviceModel> devices;  ///< machines; the agent's entry for itself is left out
 };
 
 /// Error: not XML, not an answer to /probe, or the agent's own error.
-Result<ProbeAnswer> parse_probe(std::string_view text);
+Result<DevicesAnswer> parse_probe(std::string_view text);
 
 /// The device that the settings name; the only one if they name none. Error: which there are.
-Result<const DeviceModel*> choose_device(const ProbeAnswer& probe, const std::string& wanted);
+Result<const DeviceModel*> choose_device(const DevicesAnswer& probe, const std::string& wanted);
 
 /// What is taken of a data item: value * scale + offset, in mm, degrees or rpm.
 struct TakenItem {

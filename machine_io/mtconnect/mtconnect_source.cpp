@@ -47,10 +47,10 @@ std::string base_of(std::string url) {
   return url;
 }
 
-Result<ProbeAnswer> ask_probe(HttpGet& get, const std::string& base) {
+Result<DevicesAnswer> ask_probe(HttpGet& get, const std::string& base) {
   const Result<std::string> text = get.ask(base + "/probe", kAnswer);
   if (!text) return Error{trf("/probe: {}", text.error())};
-  Result<ProbeAnswer> probe = parse_probe(*text);
+  Result<DevicesAnswer> probe = parse_probe(*text);
   if (!probe) return Error{trf("/probe: {}", probe.error())};
   return probe;
 }
@@ -59,7 +59,7 @@ Result<ProbeAnswer> ask_probe(HttpGet& get, const std::string& base) {
 
 Result<AgentMachine> ask_machine(const MtconnectSettings& settings) {
   HttpGet get;
-  const Result<ProbeAnswer> probe = ask_probe(get, base_of(settings.url));
+  const Result<DevicesAnswer> probe = ask_probe(get, base_of(settings.url));
   if (!probe) return Error{probe.error()};
   const Result<const DeviceModel*> device = choose_device(*probe, settings.device);
   if (!device) return Error{device.error()};
@@ -127,8 +127,9 @@ struct MtconnectSource::Reader {
   HostStamp host_stamp;
   bool clock_told = false;
   std::deque<AxisSample> ready;
-  std::int64_t last_host_ns = 0;  ///< of the last sample
-  std::optional<std::int64_t> last_stamp_ns;
+  std::int64_t last_host_ns = 0;              ///< of the last sample
+  std::optional<std::int64_t> last_stamp_ns;  ///< of news; nothing: none since the last silence
+  std::int64_t newest_stamp_ns = 0;           ///< of all that has been told
   std::deque<std::int64_t> periods_ns;
 };
 
@@ -144,7 +145,7 @@ void MtconnectSource::Reader::failed(std::string trouble) {
 
 /// Asks what the machine has.
 void MtconnectSource::Reader::link() {
-  const Result<ProbeAnswer> probe = ask_probe(get, base);
+  const Result<DevicesAnswer> probe = ask_probe(get, base);
   if (!probe) return failed(probe.error());
   const auto refuse = [&](const std::string& why) {
     ++status_.errors;
@@ -199,9 +200,15 @@ void MtconnectSource::Reader::read_current() {
   last_stamp_ns.reset();
   status_.errors += read->damaged;
   // What it has been told of long ago still holds.
-  state->take(read->observations);
+  const std::vector<DeviceState::Stamped> made = state->take(read->observations);
   note_state();
-  confirm(read->header, get.received_ns());
+  if (state->missing().empty() && !made.empty()) {
+    newest_stamp_ns = made.front().stamp_ns;
+    for (const DeviceState::Stamped& one : made) {
+      newest_stamp_ns = std::max(newest_stamp_ns, one.stamp_ns);
+    }
+    confirm(read->header, get.received_ns());
+  }
   phase = Phase::kAsking;
   due = SteadyClock::now();
 }
@@ -327,22 +334,25 @@ void MtconnectSource::Reader::note_period(std::int64_t stamp_ns) {
     if (periods_ns.size() > kPeriods) periods_ns.pop_front();
   }
   last_stamp_ns = stamp_ns;
+  newest_stamp_ns = std::max(newest_stamp_ns, stamp_ns);
 }
 
 /// A sign of life: what was told still holds. The machine may have moved since it was last looked
-/// at, which is a period ago at most.
+/// at, which is a period ago at most, and not before the newest of what was told.
 void MtconnectSource::Reader::confirm(const AgentHeader& header, std::int64_t received_ns) {
-  if (!state->missing().empty()) return;
-  std::int64_t age_ns = clock.answer_age_ns(header.created.ns, received_ns);
+  const std::int64_t heartbeat_ns = settings.heartbeat_ms * 1'000'000LL;
+  std::int64_t period_ns = heartbeat_ns;
   if (!periods_ns.empty()) {
-    const std::int64_t heartbeat_ns = settings.heartbeat_ms * 1'000'000LL;
-    age_ns += std::min(*std::min_element(periods_ns.begin(), periods_ns.end()), heartbeat_ns);
+    period_ns = std::min(*std::min_element(periods_ns.begin(), periods_ns.end()), period_ns);
   }
+  const std::int64_t age_ns =
+      std::min(clock.answer_age_ns(header.created.ns, received_ns) + period_ns,
+               clock.age_ns(newest_stamp_ns, received_ns));
   const std::int64_t real_ns =
       host_stamp.stamp(clock_ns(CLOCK_REALTIME), clock_ns(CLOCK_MONOTONIC));
   const std::int64_t since_ns = clock_ns(CLOCK_MONOTONIC) - received_ns;
   const std::int64_t host_ns = real_ns - since_ns - age_ns;
-  if (last_host_ns != 0 && host_ns - last_host_ns < settings.heartbeat_ms * 900'000LL) return;
+  if (last_host_ns != 0 && host_ns - last_host_ns < heartbeat_ns / 10 * 9) return;
   push(state->sample(), age_ns, received_ns);
 }
 
@@ -391,6 +401,8 @@ PositionSource::Next MtconnectSource::Reader::next(AxisSample& sample, milliseco
     if (!ready.empty()) {
       sample = ready.front();
       ready.pop_front();
+      sample.age_ns =
+          host_stamp.stamp(clock_ns(CLOCK_REALTIME), clock_ns(CLOCK_MONOTONIC)) - sample.host_ns;
       ++status_.samples;
       status_.state = SourceState::kReading;
       return Next::kSample;

@@ -62,7 +62,8 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
     head.trigger = can->map.trigger.has_value();
   }
   head.load = load_unit_of(request.config, source);
-  head.program = std::holds_alternative<HalSettings>(request.config.source);
+  head.program = std::holds_alternative<HalSettings>(request.config.source) ||
+                 std::holds_alternative<MtconnectSettings>(request.config.source);
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
     head.extra.emplace_back("joints", request.config.machine.joints);
