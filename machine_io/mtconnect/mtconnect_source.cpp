@@ -91,6 +91,7 @@ struct MtconnectSource::Reader {
   void read_parts();
   void take_answer(const std::string& text, std::optional<std::int64_t> asked_ns);
   bool is_of_this_run(const AgentHeader& header);
+  std::uint64_t leave_torn(StreamAnswer& read) const;
   void take_observations(const StreamAnswer& answer, std::int64_t received_ns);
   void confirm(const AgentHeader& header, std::int64_t received_ns);
   void push(AxisSample sample, std::int64_t age_ns, std::int64_t received_ns);
@@ -281,7 +282,7 @@ void MtconnectSource::Reader::read_parts() {
 /// One whole answer to /sample.
 void MtconnectSource::Reader::take_answer(const std::string& text,
                                           std::optional<std::int64_t> asked_ns) {
-  const Result<StreamAnswer> read = parse_streams(text, *device);
+  Result<StreamAnswer> read = parse_streams(text, *device);
   if (!read) return failed(trf("/sample: {}", read.error()));
   if (!read->error.empty()) {
     failed(trf("/sample: {}", read->error));
@@ -300,13 +301,30 @@ void MtconnectSource::Reader::take_answer(const std::string& text,
   }
   back_off.reset();
   clock.heard(asked_ns, get.received_ns(), read->header.created);
-  take_observations(*read, get.received_ns());
   // LinuxCNC's agent tells the end of its buffer, also where it has told a part of it alone.
-  const bool is_cut = read->count >= count;
-  next_sequence = is_cut && read->newest + 1 > next_sequence
-                      ? read->newest + 1
-                      : std::max(read->header.next, read->newest + 1);
+  const bool is_cut = read->count >= count && read->newest >= next_sequence;
+  const std::uint64_t then =
+      is_cut ? leave_torn(*read) : std::max(read->header.next, read->newest + 1);
+  take_observations(*read, get.received_ns());
+  next_sequence = then;
   if (is_cut) due = SteadyClock::now();
+}
+
+/// An answer that ends because it is full may end between two axes of one time: these are left for
+/// the next one. Returns what that begins with.
+std::uint64_t MtconnectSource::Reader::leave_torn(StreamAnswer& read) const {
+  std::vector<Observation>& all = read.observations;
+  if (all.empty()) return read.newest + 1;
+  const std::int64_t last_ns = all.back().stamp_ns;
+  const auto is_of_last = [&](const Observation& one) {
+    return std::abs(one.stamp_ns - last_ns) <= static_cast<std::int64_t>(settings.gather_ms * 1e6);
+  };
+  std::size_t kept = all.size();
+  while (kept > 0 && is_of_last(all[kept - 1])) --kept;
+  if (kept == 0 || all[kept].sequence <= next_sequence) return read.newest + 1;
+  const std::uint64_t then = all[kept].sequence;
+  all.resize(kept);
+  return then;
 }
 
 void MtconnectSource::Reader::take_observations(const StreamAnswer& read,

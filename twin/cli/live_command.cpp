@@ -27,6 +27,7 @@
 #include "twin/cli/screen_program.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
+#include "twin/config/agent_machine.h"
 #include "twin/config/make_source.h"
 
 namespace kerf {
@@ -477,6 +478,9 @@ int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
   std::unique_ptr<PositionSource> source;
+  if (!has_error(diagnostics) && request.ini.empty()) {
+    take_agent_machine(request.config, request.options.cutting.timeline, diagnostics);
+  }
   if (!has_error(diagnostics)) source = make_source(request.config, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
