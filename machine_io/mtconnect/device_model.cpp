@@ -266,8 +266,8 @@ class ItemPlanner {
   std::optional<TakenItem> taken(const DataItem& item, bool is_length) {
     const std::optional<double> scale = scale_of_unit(item.units, is_length);
     if (!scale) {
-      fail(trf("data item {}: '{}' is no unit of {}", item.id, item.units,
-               is_length ? tr("a length") : tr("an angle")));
+      fail(is_length ? trf("data item {}: '{}' is no unit of a length", item.id, item.units)
+                     : trf("data item {}: '{}' is no unit of an angle", item.id, item.units));
       return std::nullopt;
     }
     return TakenItem{item.id, *scale, 0};

@@ -9,6 +9,7 @@ standard input, and answers each with "ok":
     clock AGENT STAMPS  the agent's clock is ahead by so many s, that of the stamps by so many more
     late S              observations come so long after they were stamped
     chop N              bytes at a time; 0: as they are
+    kinematics MODULE   /probe has LinuxCNC's words for it
     restart             begins anew: another instanceId, sequence numbers from 1
     reset               sequence numbers from 1, and the same instanceId
     overrun             the buffer loses all that it has, and 500 more go by
@@ -36,6 +37,7 @@ class Agent:
     stamps_ahead = 0.0
     late = 0.0
     chop = 0
+    module = ""
     instance = 1000
     epoch = 0           # streams of before end
     first = 1
@@ -126,17 +128,23 @@ def streams(observations):
 def probe():
     def axis(letter):
         return ('<Linear id="a%s" name="%s"><DataItems><DataItem category="SAMPLE" id="%s" '
-                'type="POSITION" subType="ACTUAL" units="MILLIMETER"/></DataItems></Linear>'
-                % (letter, letter, letter.lower()))
+                'type="POSITION" subType="ACTUAL" units="MILLIMETER"/></DataItems>%s</Linear>'
+                % (letter, letter, letter.lower(), travel.get(letter, "")))
+    travel = {"X": "<Configuration><Specifications><Specification type='POSITION' units='MILLIMETER'>"
+                   "<Maximum>400</Maximum><Minimum>-12.5</Minimum></Specification></Specifications>"
+                   "</Configuration>",
+              "Z": "<Configuration><Specifications><Specification type='POSITION' units='MILLIMETER'>"
+                   "<Maximum>7</Maximum></Specification></Specifications></Configuration>"}
+    own = "<Description><Kinematics module='%s'/></Description>" % Agent.module if Agent.module else ""
     items = "".join('<DataItem category="EVENT" id="%s" type="%s"/>' % pair for pair in
                     (("exec", "EXECUTION"), ("line", "LINE_NUMBER"), ("tool", "TOOL_NUMBER")))
-    return ('<MTConnectDevices>%s<Devices><Device id="d" name="Test" uuid="u"><DataItems><DataItem '
+    return ('<MTConnectDevices>%s<Devices><Device id="d" name="Test" uuid="u">%s<DataItems><DataItem '
             'category="EVENT" id="avail" type="AVAILABILITY"/></DataItems><Components><Axes id="ax">'
             '<Components>%s<Rotary id="s" name="S"><DataItems><DataItem category="SAMPLE" id="rpm" '
             'type="ROTARY_VELOCITY" subType="ACTUAL" units="REVOLUTION/MINUTE"/><DataItem '
             'category="SAMPLE" id="load" type="LOAD" units="PERCENT"/></DataItems></Rotary>'
             '</Components></Axes><Path id="p"><DataItems>%s</DataItems></Path></Components></Device>'
-            '</Devices></MTConnectDevices>' % (header("Devices"), "".join(map(axis, "XYZ")), items))
+            '</Devices></MTConnectDevices>' % (header("Devices"), own, "".join(map(axis, "XYZ")), items))
 
 
 def error(code, text):
@@ -274,6 +282,8 @@ def obey(line):
             Agent.ahead, Agent.stamps_ahead = float(words[1]), float(words[2])
         elif words[0] == "late":
             Agent.late = float(words[1])
+        elif words[0] == "kinematics":
+            Agent.module = words[1]
         elif words[0] == "chop":
             Agent.chop = int(words[1])
         elif words[0] in ("restart", "reset"):
