@@ -266,29 +266,37 @@ TEST_F(WindowPictures, TheKeyEndsAFilm) {
 
 /// While it is cut as fast as can be the processor is for the cutting: pictures come, but not one
 /// after the other.
-TEST_F(WindowTest, WhileItHurriesPicturesAreFewer) {
+/// Six parts of seven are for cutting. How long a picture takes is the machine's affair; panels may
+/// add to it.
+TEST_F(WindowTest, WhileItHurriesMostOfTheTimeIsNotForDrawing) {
   most_frames_per_s_ = 100'000;  // a fast processor makes more than a thousand
   open();
-  const auto frames_in_a_second = [this](PlayState state) {
+  const auto share_of_drawing = [this](PlayState state) {
+    using Clock = std::chrono::steady_clock;
     Moment moment = test_moment();
     moment.state = state;
     moment.is_behind = state == PlayState::kHurrying;
     publish(moment);
     settle();
-    const std::uint64_t before = frames();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-    while (std::chrono::steady_clock::now() < end) {
+    std::uint64_t pictures = 0;
+    Clock::duration drawing{};
+    const Clock::time_point begin = Clock::now();
+    while (Clock::now() < begin + std::chrono::seconds(1)) {
       moment.tool_pose->tip_mm.x += 0.01;
       publish(moment);
-      EXPECT_TRUE(window_->frame(0.02));
+      const std::uint64_t before = frames();
+      const Clock::time_point call = Clock::now();
+      EXPECT_TRUE(window_->frame(0.0));
+      if (frames() == before) continue;
+      ++pictures;
+      drawing += Clock::now() - call;
     }
-    return frames() - before;
+    EXPECT_GE(pictures, 3u);
+    return std::chrono::duration<double>(drawing) / (Clock::now() - begin);
   };
-  const std::uint64_t playing = frames_in_a_second(PlayState::kPlaying);
-  const std::uint64_t hurrying = frames_in_a_second(PlayState::kHurrying);
-  EXPECT_GE(hurrying, 3u);
-  // Playing is bound by what the panels ask of a fast processor, too: it is no seventh.
-  EXPECT_LT(3 * hurrying, 2 * playing);
+  const double playing = share_of_drawing(PlayState::kPlaying);
+  const double hurrying = share_of_drawing(PlayState::kHurrying);
+  EXPECT_LT(hurrying, 0.6 * playing) << playing << ", playing";
 }
 
 TEST_F(WindowPictures, WithoutFfmpegThereIsNoFilm) {

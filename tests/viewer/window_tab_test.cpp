@@ -1,5 +1,6 @@
 // The window inside another program's: a tab of LinuxCNC's screen.
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 
@@ -9,6 +10,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "tests/viewer/window_fixture.h"
 #include "viewer/window/screen_tab.h"
@@ -41,6 +43,17 @@ class Container {
   void destroy() {
     x_->destroy_window(display_, window_);
     x_->sync(display_, False);
+  }
+  /// As a socket of GTK: what lies in it outlives it. And then its program dies without a farewell.
+  void die_and_leave(std::uint32_t inside) {
+    void* const library = dlopen("libX11.so.6", RTLD_NOW);
+    ASSERT_NE(library, nullptr);
+    const auto add_to_save_set =
+        reinterpret_cast<int (*)(Display*, ::Window)>(dlsym(library, "XAddToSaveSet"));
+    ASSERT_NE(add_to_save_set, nullptr);
+    add_to_save_set(display_, inside);
+    x_->sync(display_, False);
+    x_->close_display(std::exchange(display_, x_->open_display(nullptr)));
   }
   /// That have come since it was asked last.
   int keys() {
@@ -166,6 +179,21 @@ TEST_F(WindowTabTest, ATabFollowsTheScreenAndGoesWithIt) {
   screen.destroy();
   bool is_there = true;
   for (int i = 0; i < 500 && is_there; ++i) is_there = follows();
+  EXPECT_FALSE(is_there);
+}
+
+TEST_F(WindowTabTest, ATabThatASocketLeavesBehindGoesToo) {
+  Container screen(900, 600);
+  Result<ScreenTab> tab = ScreenTab::open(screen.id());
+  ASSERT_TRUE(tab) << tab.error();
+  EXPECT_TRUE(tab->follow());
+  screen.die_and_leave(tab->id());
+  bool is_there = true;
+  for (int i = 0; i < 500 && is_there; ++i) {
+    pollfd news{tab->connection_fd(), POLLIN, 0};
+    poll(&news, 1, 10);
+    is_there = tab->follow();
+  }
   EXPECT_FALSE(is_there);
 }
 

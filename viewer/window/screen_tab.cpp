@@ -60,7 +60,11 @@ struct ScreenTab::Impl {
       XEvent event;
       x->next_event(display, &event);
       if (is_lost) break;
-      if (event.type == DestroyNotify && event.xdestroywindow.window == window) return false;
+      // A socket of GTK that dies without a farewell leaves the tab's window to the screen's
+      // background.
+      if (event.type == DestroyNotify &&
+          (event.xdestroywindow.window == window || event.xdestroywindow.window == parent))
+        return false;
       if (event.type == ConfigureNotify && event.xconfigure.window == parent && !fit())
         return false;
     }

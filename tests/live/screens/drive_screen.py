@@ -114,10 +114,17 @@ def main():
     result["errors"] = machine.errors
     with open("screen.json", "w", encoding="utf-8") as file:
         json.dump(result, file)
-    # The screen ends LinuxCNC when it is closed.
-    for pid in pids("/usr/bin/(axis|gmoccapy|qtvcp)") or pids("qtvcp|gmoccapy|axis"):
-        if pid != os.getpid():
-            os.kill(pid, signal.SIGTERM)
+    # The screen ends LinuxCNC when it is closed. LinuxCNC's Python module makes SIGTERM a KeyboardInterrupt, which
+    # Gmoccapy mostly shows in a dialog that waits to be read.
+    screen = [pid for pid in pids("/usr/bin/(axis|gmoccapy|qtvcp)") or pids("qtvcp|gmoccapy|axis") if pid != os.getpid()]
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        for pid in screen:
+            try:
+                os.kill(pid, number)
+            except ProcessLookupError:
+                pass
+        if since(time.monotonic(), lambda: not any(os.path.exists(f"/proc/{pid}") for pid in screen), 4) is not None:
+            break
     return 0 if result.get("program_s") else 1
 
 

@@ -150,7 +150,9 @@ class HalLive : public testing::Test {
         "timeout 20 bash -c 'until halcmd getp halui.program.is-idle | grep -q TRUE; do "
         "sleep 0.02; done'; "
         "halcmd -s show pin >pins.txt; halcmd -s show sig >sigs.txt; " KERF_HAL
-        " --rate 100 2>second.txt | head -c 288 >second.bin; "
+        " --rate 100 2>second.txt | head -c " +
+        std::to_string(sizeof(HalSampleRecord)) +
+        " >second.bin; "
         "halcmd stop; " KERF_HAL
         " 2>still.txt >still.bin; echo $? >>still.txt; "
         "timeout 20 bash -c 'while halcmd -s list comp | grep -q kerf-hal; do sleep 0.02; done'; "
@@ -295,9 +297,12 @@ TEST_F(HalLive, ThePinsShowWhatKerfSays) {
                                                         {"kerf.collision-ahead", "TRUE"},
                                                         {"kerf.collision-seconds", "3.5"},
                                                         {"kerf.finding-line", "7"},
+                                                        {"kerf.findings", "-1"},
                                                         {"kerf.off-path", "FALSE"},
                                                         {"kerf.off-path-mm", "0.25"},
-                                                        {"kerf.stale", "FALSE"}}));
+                                                        {"kerf.program-ok", "FALSE"},
+                                                        {"kerf.stale", "FALSE"},
+                                                        {"kerf.time-left", "-1"}}));
 }
 
 TEST_F(HalLive, NothingIsLinked) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/base/sanitized.h"
 #include "tests/twin/cli/kerf_process.h"
 
 namespace kerf {
@@ -19,11 +20,7 @@ namespace {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr double kAllowed_s = 1.5;
-#else
-constexpr double kAllowed_s = 0.3;
-#endif
+constexpr double kAllowed_s = kIsSanitized ? 1.5 : 0.3;
 /// Clock ticks of /proc, and what kerf does between the signal and its being heard.
 constexpr double kTick_s = 0.05;
 

@@ -11,6 +11,7 @@
 
 #include "stock/cutter/shape_spec.h"
 #include "stock/zmap/zmap.h"
+#include "tests/base/sanitized.h"
 #include "twin/process/milling/engagement_scan.h"
 
 namespace kerf {
@@ -28,7 +29,8 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
   const Cutter cutter = parse_shape(shape).value();
   const Cutter other = parse_shape("flat:5").value();
   EngagementErrors off;
-  for (int round = 0; round < 6; ++round) {
+  const int rounds = kIsSanitized ? 2 : 6;
+  for (int round = 0; round < rounds; ++round) {
     ZMapOptions options;
     options.blank = parse_blank("box:0,0,-10:40,30,0").value();
     options.cell_mm = kOracleCell_mm;
@@ -79,12 +81,12 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
       if (unit(random) < 0.25) at.z = -1 - 4 * unit(random);
     }
   }
-  EXPECT_GT(off.looks, 200);
+  EXPECT_GT(off.looks, 33 * rounds);
   RecordProperty("errors", off.text());
   // At a rim all of them. Of what is not flat material may be thinner, beside a pass, than the
   // directions and radii of a look are apart: half of those that are off are so.
   const bool flat = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
-  EXPECT_GE(off.within, (flat ? 1.0 : 0.9) * off.looks) << off.text();
+  EXPECT_GE(off.within, (flat ? 1.0 : kIsSanitized ? 0.8 : 0.9) * off.looks) << off.text();
 }
 
 /// What random moves remove in cells of 0.1 mm, against cells of a fifth of that.
