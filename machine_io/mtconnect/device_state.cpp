@@ -145,25 +145,25 @@ bool DeviceState::is_told(const Observation& one) const {
 
 std::vector<DeviceState::Stamped> DeviceState::take(std::span<const Observation> observations) {
   std::vector<Stamped> out;
-  bool is_open = false;
-  std::int64_t begun_ns = 0, newest_ns = 0;
   const auto close = [&] {
-    if (!is_open) return;
+    if (!std::exchange(is_open_, false)) return;
     settle();
-    out.push_back({now_, newest_ns});
-    is_open = false;
+    fresh_before_ = now_.fresh;
+    out.push_back({now_, newest_ns_});
   };
+  if (observations.empty()) close();
   for (const Observation& one : observations) {
-    const bool is_late = std::abs(one.stamp_ns - begun_ns) > gather_ns_;
+    const bool is_late = std::abs(one.stamp_ns - begun_ns_) > gather_ns_;
     // An axis that is told twice has been at both places.
-    if (is_open && (is_late || is_told(one))) close();
-    if (!is_open) now_.fresh = 0;
+    if (is_open_ && (is_late || is_told(one))) close();
+    if (!is_open_) now_.fresh = 0;
     if (!apply(one)) continue;
-    if (!is_open) begun_ns = newest_ns = one.stamp_ns;
-    newest_ns = std::max(newest_ns, one.stamp_ns);
-    is_open = true;
+    if (!is_open_) begun_ns_ = newest_ns_ = one.stamp_ns;
+    newest_ns_ = std::max(newest_ns_, one.stamp_ns);
+    is_open_ = true;
   }
-  close();
+  // An axis that was told with these the last time may be in the next answer.
+  if ((fresh_before_ & ~now_.fresh) == 0 || now_.fresh == 0) close();
   return out;
 }
 

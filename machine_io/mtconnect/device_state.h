@@ -24,8 +24,11 @@ class DeviceState {
     std::int64_t stamp_ns = 0;  ///< of the newest observation in it
   };
   /// The samples that they make, in their order; only of data items that count. In the order of
-  /// their sequence numbers.
+  /// their sequence numbers. An answer may end between two axes of one time: where one is missing
+  /// that was told with the others before, the last sample waits for the next call.
   std::vector<Stamped> take(std::span<const Observation> observations);
+  /// A sample waits.
+  bool is_waiting() const { return is_open_; }
   /// The state as it is, as a sample in which everything known has been read.
   AxisSample sample() const;
 
@@ -49,6 +52,9 @@ class DeviceState {
   ItemPlan plan_;
   std::int64_t gather_ns_;
   AxisSample now_;
+  bool is_open_ = false;  ///< now_ has observations that no sample has been made of
+  std::int64_t begun_ns_ = 0, newest_ns_ = 0;  ///< of these
+  std::uint16_t fresh_before_ = 0;             ///< of the last sample
   std::string execution_, mode_, direction_;
   bool is_available_ = true;
   double rpm_ = std::numeric_limits<double>::quiet_NaN();

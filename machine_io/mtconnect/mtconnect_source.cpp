@@ -201,7 +201,8 @@ void MtconnectSource::Reader::read_current() {
   last_stamp_ns.reset();
   status_.errors += read->damaged;
   // What it has been told of long ago still holds.
-  const std::vector<DeviceState::Stamped> made = state->take(read->observations);
+  std::vector<DeviceState::Stamped> made = state->take(read->observations);
+  for (const DeviceState::Stamped& one : state->take({})) made.push_back(one);
   note_state();
   if (state->missing().empty() && !made.empty()) {
     newest_stamp_ns = made.front().stamp_ns;
@@ -342,7 +343,7 @@ void MtconnectSource::Reader::take_observations(const StreamAnswer& read,
     note_period(one.stamp_ns);
     push(one.sample, clock.age_ns(one.stamp_ns, received_ns), received_ns);
   }
-  if (made.empty()) confirm(read.header, received_ns);
+  if (made.empty() && !state->is_waiting()) confirm(read.header, received_ns);
 }
 
 /// From one piece of news to the next, where they come one after the other.

@@ -9,6 +9,9 @@ standard input, and answers each with "ok":
     clock AGENT STAMPS  the agent's clock is ahead by so many s, that of the stamps by so many more
     late S              observations come so long after they were stamped
     chop N              bytes at a time; 0: as they are
+    slot FEED           from X -20 to X 60 at Y 0 Z -2 with so many mm/s, a second after the first
+                        question to /sample; it stands before and after
+    forget              the next question to /sample is the first
     kinematics MODULE   /probe has LinuxCNC's words for it
     restart             begins anew: another instanceId, sequence numbers from 1
     reset               sequence numbers from 1, and the same instanceId
@@ -38,6 +41,8 @@ class Agent:
     late = 0.0
     chop = 0
     module = ""
+    slot = 0.0
+    asked = None        # when /sample was asked for the first time
     instance = 1000
     epoch = 0           # streams of before end
     first = 1
@@ -74,6 +79,9 @@ ELEMENTS = {"avail": "Availability", "x": "Position", "y": "Position", "z": "Pos
 
 def place(moment):
     t = moment - BEGUN
+    if Agent.slot:
+        way = Agent.slot * (moment - Agent.asked - 1) if Agent.asked else 0
+        return [("x", "%.6f" % (-20 + min(80, max(0, way)))), ("y", "0"), ("z", "-2")]
     return [("x", "%.6f" % t), ("y", "%.6f" % (2 * t + 1)), ("z", "%.6f" % -t)]
 
 
@@ -230,6 +238,7 @@ class Handler(BaseHTTPRequestHandler):
 
     def sample(self, start, count, interval, heartbeat):
         with lock:
+            Agent.asked = Agent.asked or time.time()
             bad = start < Agent.first or start > Agent.next
             text = error("OUT_OF_RANGE", "from=%d, there is %d to %d" % (start, Agent.first, Agent.next)) \
                 if bad else streams([o for o in Agent.buffer if start <= o[0] < start + count])
@@ -282,6 +291,10 @@ def obey(line):
             Agent.ahead, Agent.stamps_ahead = float(words[1]), float(words[2])
         elif words[0] == "late":
             Agent.late = float(words[1])
+        elif words[0] == "slot":
+            Agent.slot = float(words[1])
+        elif words[0] == "forget":
+            Agent.asked = None
         elif words[0] == "kinematics":
             Agent.module = words[1]
         elif words[0] == "chop":

@@ -32,6 +32,14 @@ DeviceState state_of_xyz() {
   return DeviceState(plan_of_xyz(), LoadUnit::kPercentOfPower, 2 * kStampMs);
 }
 
+/// And the last one, for which no other axis comes.
+std::vector<DeviceState::Stamped> all_of(DeviceState& state,
+                                         const std::vector<Observation>& observations) {
+  std::vector<DeviceState::Stamped> made = state.take(observations);
+  for (const auto& one : state.take({})) made.push_back(one);
+  return made;
+}
+
 std::vector<Observation> told(std::initializer_list<std::pair<const char*, const char*>> values,
                               std::int64_t stamp_ns) {
   std::vector<Observation> out;
@@ -51,7 +59,7 @@ TEST(DeviceState, one_time_is_one_sample) {
       told({{"x", "1.5"}, {"y", "2"}, {"z", "-3"}, {"tool", "7"}, {"line", "12"}}, 10 * kStampMs);
   const auto later = told({{"x", "2.5"}, {"other", "9"}}, 110 * kStampMs);
   news.insert(news.end(), later.begin(), later.end());
-  const auto made = state.take(news);
+  const auto made = all_of(state, news);
   ASSERT_EQ(made.size(), 2U);
   EXPECT_EQ(made[0].stamp_ns, 10 * kStampMs);
   EXPECT_EQ(made[0].sample.position[0], 1.5);
@@ -68,7 +76,7 @@ TEST(DeviceState, one_time_is_one_sample) {
   EXPECT_EQ(made[1].sample.fresh, 1);
   EXPECT_EQ(state.sample().fresh, 7);
   EXPECT_EQ(state.missing(), "");
-  EXPECT_TRUE(state.take(told({{"other", "1"}}, 200 * kStampMs)).empty());
+  EXPECT_TRUE(all_of(state, told({{"other", "1"}}, 200 * kStampMs)).empty());
 }
 
 TEST(DeviceState, stamps_that_lie_close_are_one_sample_but_an_axis_is_in_one_place) {
@@ -81,12 +89,33 @@ TEST(DeviceState, stamps_that_lie_close_are_one_sample_but_an_axis_is_in_one_pla
   add(told({{"z", "1"}}, 2 * kStampMs));
   add(told({{"x", "2"}}, 2 * kStampMs));
   add(told({{"y", "2"}}, 5 * kStampMs));
-  const auto made = state.take(news);
+  const auto made = all_of(state, news);
   ASSERT_EQ(made.size(), 3U);
   EXPECT_EQ(made[0].sample.fresh, 7);
   EXPECT_EQ(made[0].stamp_ns, 2 * kStampMs);
   EXPECT_EQ(made[1].sample.fresh, 1);
   EXPECT_EQ(made[2].sample.fresh, 2);
+}
+
+TEST(DeviceState, an_answer_that_ends_between_two_axes_is_gone_on_with) {
+  DeviceState state = state_of_xyz();
+  ASSERT_EQ(state.take(told({{"x", "1"}, {"y", "1"}, {"z", "1"}}, 0)).size(), 1U);
+  EXPECT_TRUE(state.take(told({{"x", "2"}}, 20 * kStampMs)).empty());
+  EXPECT_TRUE(state.is_waiting());
+  const auto made = state.take(told({{"y", "2"}, {"z", "2"}}, 20 * kStampMs));
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].sample.fresh, 7);
+  EXPECT_EQ(made[0].stamp_ns, 20 * kStampMs);
+  EXPECT_FALSE(state.is_waiting());
+  // The others stand: that shows as soon as there is other news, or none.
+  EXPECT_TRUE(state.take(told({{"x", "3"}}, 40 * kStampMs)).empty());
+  const auto next = state.take(told({{"x", "4"}}, 60 * kStampMs));
+  ASSERT_EQ(next.size(), 2U);
+  EXPECT_EQ(next[0].sample.position[0], 3);
+  EXPECT_EQ(next[1].sample.position[0], 4);
+  // A tool alone is no axis that others could follow.
+  EXPECT_EQ(state.take(told({{"tool", "3"}}, 80 * kStampMs)).size(), 1U);
+  EXPECT_TRUE(state.take({}).empty());
 }
 
 TEST(DeviceState, unavailable_is_not_known) {

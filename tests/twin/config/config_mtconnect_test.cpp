@@ -36,8 +36,7 @@ TEST(ConfigMtconnect, ValuesArriveAndArePrinted) {
   const ReadText again(printed);
   ASSERT_TRUE(again.config) << again.said() << printed;
   EXPECT_EQ(effective_yaml(*again.config), printed);
-  EXPECT_NE(printed.find("X: {item: xabs, scale: 2, offset: -1}"), std::string::npos)
-      << printed;
+  EXPECT_NE(printed.find("X: {item: xabs, scale: 2, offset: -1}"), std::string::npos) << printed;
   Diagnostics diagnostics;
   const auto source = make_source(*read.config, diagnostics);
   ASSERT_TRUE(source);
