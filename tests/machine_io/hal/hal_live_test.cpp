@@ -100,6 +100,7 @@ struct Sample {
   double tool_offset = NAN;
   double spindle = NAN;
   Point joint{};
+  double load = NAN;
 
   Point tip() const {
     return {joint[0] - kWork[0], joint[1] - kWork[1], joint[2] - kWork[2] - tool_offset};
@@ -116,7 +117,7 @@ std::vector<Sample> samples_of(const std::filesystem::path& path) {
   std::vector<Sample> samples;
   Sample s;
   while (file >> s.host_ns >> s.device_ns >> s.known >> s.tool >> s.line >> s.tool_offset >>
-         s.spindle >> s.joint[0] >> s.joint[1] >> s.joint[2]) {
+         s.spindle >> s.joint[0] >> s.joint[1] >> s.joint[2] >> s.load) {
     samples.push_back(s);
   }
   return samples;
@@ -209,6 +210,16 @@ TEST_F(HalLive, PositionsLieOnTheProgrammedPath) {
   RecordProperty("mixed", mixed);
   EXPECT_LE(mixed, 1 + kMixedShare * read);
   for (int line = 5; line <= 10; ++line) EXPECT_GT(samples_of_line[line], 50) << "line " << line;
+}
+
+/// The probe has the pin of a joint for a drive's load, by twice its number and one.
+TEST_F(HalLive, TheLoadIsThatOfItsPin) {
+  double lowest = 1e9, highest = -1e9;
+  for (const Sample& sample : samples_) {
+    ASSERT_NEAR(sample.load, 2 * sample.joint[2] + 1, 1e-9);
+    lowest = std::min(lowest, sample.load), highest = std::max(highest, sample.load);
+  }
+  EXPECT_GT(highest - lowest, 10) << "it moved";
 }
 
 TEST_F(HalLive, EveryCornerIsReached) {

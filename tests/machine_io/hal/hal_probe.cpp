@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
   kerf::HalSettings settings;
   settings.kerf_hal_path = argv[1];
   std::from_chars(argv[2], argv[2] + std::strlen(argv[2]), settings.rate_hz);
+  // A number that is known otherwise stands for a drive's load: another pin's.
+  settings.load = kerf::HalLoad{"joint.2.pos-fb", kerf::LoadUnit::kPercentOfPower, 2.0, 1.0};
   const std::string out = argv[3];
   for (const std::string& fault : kerf::validate(settings)) {
     fmt::print(stderr, "hal_probe: {}\n", fault);
@@ -48,9 +50,9 @@ int main(int argc, char** argv) {
     before = now;
     if (next == kerf::PositionSource::Next::kEnd) break;
     if (next != kerf::PositionSource::Next::kSample) continue;
-    samples.print("{} {} {} {} {} {} {} {} {} {}\n", sample.host_ns, sample.device_ns, sample.known,
+    samples.print("{} {} {} {} {} {} {} {} {} {} {}\n", sample.host_ns, sample.device_ns, sample.known,
                   sample.tool, sample.line, sample.tool_offset_z_mm, sample.spindle_rpm,
-                  sample.position[0], sample.position[1], sample.position[2]);
+                  sample.position[0], sample.position[1], sample.position[2], sample.load);
   }
   const kerf::SourceStatus& status = source.status();
   states.print("samples {} errors {} reconnects {} lost {}\n", status.samples, status.errors,
