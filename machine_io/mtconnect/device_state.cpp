@@ -149,7 +149,7 @@ std::vector<DeviceState::Stamped> DeviceState::take(std::span<const Observation>
     if (!std::exchange(is_open_, false)) return;
     settle();
     fresh_before_ = now_.fresh;
-    out.push_back({now_, newest_ns_});
+    out.push_back({now_, newest_ns_, missing().empty()});
   };
   if (observations.empty()) close();
   for (const Observation& one : observations) {

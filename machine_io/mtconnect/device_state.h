@@ -22,6 +22,7 @@ class DeviceState {
   struct Stamped {
     AxisSample sample;
     std::int64_t stamp_ns = 0;  ///< of the newest observation in it
+    bool is_whole = true;       ///< false: there was a missing() then
   };
   /// The samples that they make, in their order; only of data items that count. In the order of
   /// their sequence numbers. An answer may end between two axes of one time: where one is missing

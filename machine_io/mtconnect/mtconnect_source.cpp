@@ -338,12 +338,16 @@ void MtconnectSource::Reader::take_observations(const StreamAnswer& read,
   const std::vector<DeviceState::Stamped> made = state->take({first, read.observations.end()});
   for (const DeviceState::Stamped& one : made) clock.observed(one.stamp_ns, received_ns);
   note_state();
-  if (!state->missing().empty()) return;
   for (const DeviceState::Stamped& one : made) {
+    if (!one.is_whole) {
+      last_stamp_ns.reset();
+      continue;
+    }
     note_period(one.stamp_ns);
     push(one.sample, clock.age_ns(one.stamp_ns, received_ns), received_ns);
   }
-  if (made.empty() && !state->is_waiting()) confirm(read.header, received_ns);
+  const bool is_known = state->missing().empty();
+  if (made.empty() && !state->is_waiting() && is_known) confirm(read.header, received_ns);
 }
 
 /// From one piece of news to the next, where they come one after the other.

@@ -141,6 +141,22 @@ TEST(DeviceState, unavailable_is_not_known) {
   EXPECT_EQ(state.missing(), "");
 }
 
+TEST(DeviceState, what_was_unavailable_in_between_is_not_handed_out) {
+  DeviceState state = state_of_xyz();
+  auto news = told({{"x", "1"}, {"y", "1"}, {"z", "1"}}, 0);
+  for (const auto& one : told({{"x", "2"}, {"y", "UNAVAILABLE"}, {"z", "2"}}, 20 * kStampMs)) {
+    news.push_back(one);
+  }
+  for (const auto& one : told({{"x", "3"}, {"y", "3"}, {"z", "3"}}, 40 * kStampMs)) {
+    news.push_back(one);
+  }
+  const auto made = state.take(news);
+  ASSERT_EQ(made.size(), 3U);
+  EXPECT_TRUE(made[0].is_whole);
+  EXPECT_FALSE(made[1].is_whole);
+  EXPECT_TRUE(made[2].is_whole);
+}
+
 TEST(DeviceState, what_is_no_number_is_a_fault) {
   DeviceState state = state_of_xyz();
   state.take(told({{"x", "1"}, {"y", "1"}, {"z", "1"}}, 0));
