@@ -139,7 +139,7 @@ def probe():
                 'type="POSITION" subType="ACTUAL" units="MILLIMETER"/></DataItems>%s</Linear>'
                 % (letter, letter, letter.lower(), travel.get(letter, "")))
     travel = {"X": "<Configuration><Specifications><Specification type='POSITION' units='MILLIMETER'>"
-                   "<Maximum>400</Maximum><Minimum>-12.5</Minimum></Specification></Specifications>"
+                   "<Maximum>400</Maximum><Minimum>-25.5</Minimum></Specification></Specifications>"
                    "</Configuration>",
               "Z": "<Configuration><Specifications><Specification type='POSITION' units='MILLIMETER'>"
                    "<Maximum>7</Maximum></Specification></Specifications></Configuration>"}
@@ -295,6 +295,7 @@ def obey(line):
             Agent.slot = float(words[1])
         elif words[0] == "forget":
             Agent.asked = None
+            observe(place(time.time()), time.time())
         elif words[0] == "kinematics":
             Agent.module = words[1]
         elif words[0] == "chop":

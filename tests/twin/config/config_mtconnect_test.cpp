@@ -106,14 +106,14 @@ TEST(AgentMachine, LimitsAndKinematicsOfTheProbe) {
   const double y_before = timeline.limits.axes[1].max;
   Diagnostics diagnostics;
   take_agent_machine(config, timeline, diagnostics);
-  EXPECT_EQ(timeline.limits.axes[0].min, -12.5);
+  EXPECT_EQ(timeline.limits.axes[0].min, -25.5);
   EXPECT_EQ(timeline.limits.axes[0].max, 400);
   // Y has none, Z half of them: no limits.
   EXPECT_EQ(timeline.limits.axes[1].max, y_before);
   EXPECT_FALSE(timeline.limits_known);  // speeds are not known
   EXPECT_TRUE(timeline.kinematics_known);
   const std::string said = said_of(diagnostics);
-  EXPECT_NE(said.find("limits of the axes, by Test: X -12.5..400"), std::string::npos) << said;
+  EXPECT_NE(said.find("limits of the axes, by Test: X -25.5..400"), std::string::npos) << said;
   EXPECT_NE(said.find("kinematics, by the agent: xyzac-trt-kins"), std::string::npos) << said;
 
   // What somebody says goes before it.
