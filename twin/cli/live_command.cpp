@@ -28,6 +28,7 @@
 #include "twin/cli/served_page.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
+#include "twin/config/agent_machine.h"
 #include "twin/config/make_source.h"
 #include "twin/serve/live_broadcast.h"
 
@@ -64,7 +65,8 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
     head.trigger = can->map.trigger.has_value();
   }
   head.load = load_unit_of(request.config, source);
-  head.program = std::holds_alternative<HalSettings>(request.config.source);
+  head.program = std::holds_alternative<HalSettings>(request.config.source) ||
+                 std::holds_alternative<MtconnectSettings>(request.config.source);
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
     head.extra.emplace_back("joints", request.config.machine.joints);
@@ -492,6 +494,9 @@ int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
   std::unique_ptr<PositionSource> source;
+  if (!has_error(diagnostics) && request.ini.empty()) {
+    take_agent_machine(request.config, request.options.cutting.timeline, diagnostics);
+  }
   if (!has_error(diagnostics)) source = make_source(request.config, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);

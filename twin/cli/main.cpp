@@ -40,10 +40,11 @@ namespace kerf {
 namespace {
 
 constexpr const char* kSourceList = tr_noop(
-    "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
-    "can      signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
-    "hal      pins of the LinuxCNC that runs on this computer\n"
-    "log      recordings of kerf, CSV, halsampler files, candump -l files\n");
+    "modbus     registers of a Modbus device, TCP or RTU (reads only)\n"
+    "can        signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
+    "hal        pins of the LinuxCNC that runs on this computer\n"
+    "mtconnect  the agent of a machine, as LinuxCNC 2.10's (asks with GET alone)\n"
+    "log        recordings of kerf, CSV, halsampler files, candump -l files\n");
 
 std::string model_list() {
   std::string list;

@@ -35,7 +35,8 @@ enum SourceMask : std::uint8_t {
   kForCan = 2,
   kForHal = 4,
   kForLog = 8,
-  kForAny = 15,
+  kForMtconnect = 16,
+  kForAny = 31,
 };
 
 /// Commands, as bits: which of them have an option.

@@ -266,7 +266,8 @@ void LiveSession::read_source(std::stop_token stop) {
       continue;
     }
     if (options_.log()) pace_.wait_for(sample, stop);
-    ArrivedSample arrived{sample, Clock::now(), source_->status().lost};
+    ArrivedSample arrived{sample, Clock::now() - std::chrono::nanoseconds(sample.age_ns),
+                          source_->status().lost};
     if (!options_.log() && sample.host_ns != AxisSample::kNoTime) {
       arrived.clock_set_ns = clock_watch_.set_by(sample.host_ns, steady_ns(arrived.arrival));
     }
