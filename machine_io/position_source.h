@@ -37,6 +37,9 @@ struct AxisSample {
   /// The device's own time, ns on a clock of its own: a log's stamps, the kernel's stamp of a
   /// frame, sample number times period. kNoTime if there is none. Never mixed with host_ns.
   std::int64_t device_ns = kNoTime;
+  /// How old it was by host_ns when it was handed out, as far as the source knows: what came late
+  /// is not called new. Not recorded: host_ns has it.
+  std::int64_t age_ns = 0;
   std::array<double, kMaxPositions> position{};
   std::uint16_t known = 0;  ///< bit i: position[i] has been read at least once and is not too old
   std::uint16_t fresh = 0;  ///< bit i: position[i] was read for this sample

@@ -140,6 +140,33 @@ TEST_F(WindowCurveTest, ColoursOfLoadsAreOfferedWithTheirCurves) {
                                          ColorBy::kChip, ColorBy::kLineRange, ColorBy::kPlain}));
 }
 
+/// Whichever tab is open; and with plain colours it is gone.
+TEST_F(WindowCurveTest, WhatColoursMeanStandsInThePicture) {
+  open_with_curve();
+  key("v"), key("v");
+  settle();
+  ASSERT_EQ(window_->settings().drawing.color_by, ColorBy::kTool);
+  constexpr Rgb kOfTool{10, 200, 30};
+  constexpr PixelBox kCorner{290, 560, 500, 684};
+  EXPECT_EQ(count_pixels(window_->read(), kCorner, kOfTool), 0);
+  SceneUpdate update;
+  CutColors colors;
+  colors.mode = ColorBy::kTool;
+  colors.is_of_path = true;
+  colors.of_move = {0xff808080};
+  colors.legend = {{0x001ec80a, "T1 flat 10"}, {0x001ec80a, "T2 ball 6"}};
+  update.colors = std::make_shared<const CutColors>(std::move(colors));
+  mailbox_.publish(std::move(update));
+  EXPECT_TRUE(turn_until([&] { return count_pixels(window_->read(), kCorner, kOfTool) > 300; }))
+      << "two swatches";
+  for (int presses = 0; presses < 14; ++presses) {
+    if (window_->settings().drawing.color_by == ColorBy::kPlain) break;
+    key("v");
+    settle();
+  }
+  EXPECT_EQ(count_pixels(window_->read(), kCorner, kOfTool), 0);
+}
+
 TEST_F(WindowCurveTest, BesideAMachineThereIsNone) {
   open();
   settle();

@@ -1,8 +1,10 @@
 #include "twin/cli/cli_options.h"
 
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <string_view>
+#include <system_error>
 
 #include "base/translate.h"
 
@@ -36,6 +38,21 @@ void add_options(CLI::App& app, Command command, WrittenOptions& options) {
     if ((setting.commands & command) == 0) continue;
     add_option(app, setting, options.slot(setting.option));
   }
+}
+
+std::vector<std::string> with_bare_options(std::vector<std::string> words) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const Setting* bare = nullptr;
+    for (const Setting& setting : setting_table()) {
+      if (!setting.fallback_if_bare.empty() && setting.option == words[i]) bare = &setting;
+    }
+    if (bare == nullptr) continue;
+    std::error_code ignored;
+    const bool has_value = i + 1 < words.size() && !words[i + 1].starts_with('-') &&
+                           !std::filesystem::exists(words[i + 1], ignored);
+    if (!has_value) words[i] += "=" + std::string(bare->fallback_if_bare);
+  }
+  return words;
 }
 
 void speak_language(CLI::App& app, const std::string& version) {

@@ -54,6 +54,7 @@ class FindingShots final : public LiveObserver {
   }
   void on_run(const LiveRun& run) override { next_.on_run(run); }
   bool wants_frames() const override { return next_.wants_frames(); }
+  std::chrono::milliseconds frame_period() const override { return next_.frame_period(); }
   void on_frame(StockModel& stock, const Cutter* cutter, const LiveStatus& status,
                 std::span<const Vec3> trail, std::span<const CutLabel> labels) override {
     next_.on_frame(stock, cutter, status, trail, labels);

@@ -25,9 +25,12 @@
 #include "twin/cli/page_output.h"
 #include "twin/cli/scheduling.h"
 #include "twin/cli/screen_program.h"
+#include "twin/cli/served_page.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/window_host.h"
+#include "twin/config/agent_machine.h"
 #include "twin/config/make_source.h"
+#include "twin/serve/live_broadcast.h"
 
 namespace kerf {
 namespace {
@@ -62,7 +65,8 @@ Result<std::unique_ptr<Recorder>> start_recorder(const LiveRequest& request,
     head.trigger = can->map.trigger.has_value();
   }
   head.load = load_unit_of(request.config, source);
-  head.program = std::holds_alternative<HalSettings>(request.config.source);
+  head.program = std::holds_alternative<HalSettings>(request.config.source) ||
+                 std::holds_alternative<MtconnectSettings>(request.config.source);
   if (request.options.program) head.extra.emplace_back("program", request.options.program->path);
   if (!request.config.machine.joints.empty()) {
     head.extra.emplace_back("joints", request.config.machine.joints);
@@ -151,6 +155,7 @@ struct Surroundings {
   LiveWindow* window = nullptr;           ///< null: one session, without a window
   HalSource* hal = nullptr;               ///< of a LinuxCNC: where the pins are
   const ScreenProgram* loaded = nullptr;  ///< null: not followed
+  ServedScene* served = nullptr;          ///< null: no page is served
   bool is_first = true;                   ///< of the sessions
   bool has_begun = false;                 ///< out: it could be watched
 };
@@ -269,9 +274,14 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
     observer = &*view;
     inputs.emplace(window->watch_inputs(request, *view, stop));
   }
+  std::optional<LiveBroadcast> broadcast;
+  if (around.served != nullptr) {
+    observer = &broadcast.emplace(broadcast_options(request, *session), *observer, *around.served);
+  }
   if (pins) pins->tell_to(observer, view ? &*view : nullptr);
   session->set_observer(observer);
   outcome = session->run(stop.get_token(), diagnostics);
+  if (broadcast) broadcast->end(session->stock());
   // What was cut of a log whose round is over is nothing to be reported.
   if (window && window->is_over()) return kExitGood;
   close_sources(recorder.get(), raw_source, request.record, diagnostics);
@@ -326,6 +336,10 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
     moment->notice = line;
     update.moment = std::move(moment);
     around.window->mailbox().publish(std::move(update));
+    if (around.served != nullptr) {
+      around.served->set_state(waiting_members(line));
+      around.served->publish();
+    }
   };
   if (around.loaded->state().program.empty()) tell(waiting);
   while (!stop.stop_requested()) {
@@ -351,7 +365,7 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
 
 /// Round after round, as the window asks for them, or LinuxCNC loads programs.
 int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
-                 std::stop_source& stop, LiveWindow& window) {
+                 std::stop_source& stop, LiveWindow& window, ServedScene* served) {
   const LiveClock::time_point begun = LiveClock::now();
   const double for_s = request.options.for_s;
   // Its pins stay, whatever is linked to them.
@@ -359,6 +373,7 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
   std::optional<ScreenProgram> loaded;
   Surroundings around;
   around.window = &window;
+  around.served = served;
   around.hal = dynamic_cast<HalSource*>(source.get());
   if (around.hal != nullptr) {
     shared.emplace(std::move(source));
@@ -403,26 +418,29 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
 
 /// Without a window: in rounds where LinuxCNC's programs are followed.
 int watch_unseen(const Arguments& arguments, LiveRequest& request,
-                 std::unique_ptr<PositionSource> source, std::stop_source& stop) {
+                 std::unique_ptr<PositionSource> source, std::stop_source& stop,
+                 ServedScene* served) {
   if (request.kerf_status.empty()) {
     HalSource* const hal = dynamic_cast<HalSource*>(source.get());
     Surroundings around;
     around.hal = hal;
+    around.served = served;
     return watch(request, std::move(source), stop, around);
   }
   SceneMailbox mailbox;
   CommandQueue commands;
   LiveWindow rounds(mailbox, commands, arguments, false);
-  return watch_rounds(request, std::move(source), stop, rounds);
+  return watch_rounds(request, std::move(source), stop, rounds, served);
 }
 
 /// With a window, if one is wanted and there is a display; without one a machine is watched and a
 /// log replayed, too, unless the window is all that was asked for.
 int watch_in_window(const Arguments& arguments, LiveRequest& request,
-                    std::unique_ptr<PositionSource> source, std::stop_source& stop) {
+                    std::unique_ptr<PositionSource> source, std::stop_source& stop,
+                    ServedScene* served) {
   const bool may_try = has_display() || request.needs_window;
   if (!request.window || !may_try) {
-    return watch_unseen(arguments, request, std::move(source), stop);
+    return watch_unseen(arguments, request, std::move(source), stop, served);
   }
   SceneMailbox mailbox(Window::wake);
   CommandQueue commands;
@@ -440,7 +458,7 @@ int watch_in_window(const Arguments& arguments, LiveRequest& request,
   options.embed_in = request.embed_in;
   const Result<int> code = work_beside_window(
       options, mailbox, commands, stop,
-      [&] { return watch_rounds(request, std::move(source), stop, window); },
+      [&] { return watch_rounds(request, std::move(source), stop, window, served); },
       [&](const std::string& reason) {
         window.lost = true;
         go_on(reason);
@@ -453,7 +471,7 @@ int watch_in_window(const Arguments& arguments, LiveRequest& request,
     return kExitFailure;
   }
   go_on(code.error());
-  return watch_unseen(arguments, request, std::move(source), stop);
+  return watch_unseen(arguments, request, std::move(source), stop, served);
 }
 
 int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics diagnostics) {
@@ -476,11 +494,30 @@ int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics
   std::stop_source stop;
   const StopSignals signals(stop, [] { remove_uncommitted_files(); });
   std::unique_ptr<PositionSource> source;
+  if (!has_error(diagnostics) && request.ini.empty()) {
+    take_agent_machine(request.config, request.options.cutting.timeline, diagnostics);
+  }
   if (!has_error(diagnostics)) source = make_source(request.config, diagnostics);
   print_diagnostics(diagnostics, request.quiet);
   const bool none_named = std::holds_alternative<std::monostate>(request.config.source);
   if (!source) return none_named ? kExitUsage : kExitFailure;
-  return watch_in_window(arguments, request, std::move(source), stop);
+  std::optional<ServedPage> page;
+  if (request.serve) {
+    page.emplace();
+    Result<std::string> link = page->open(*request.serve);
+    if (!link) {
+      Diagnostic d = fault(fmt::format("--serve: {}", link.error()));
+      d.hint =
+          tr("it must be an address of this computer and a port that nobody has; port 0 is any");
+      print_diagnostics({d}, false);
+      return kExitFailure;
+    }
+    // Whoever is to look on needs it, --quiet or not.
+    print_text(stderr, trf("kerf: the page is at {}\n", *link));
+    flush_console();
+  }
+  return watch_in_window(arguments, request, std::move(source), stop,
+                         page ? &page->scene() : nullptr);
 }
 
 /// In a tab of LinuxCNC's screen.
@@ -528,7 +565,7 @@ ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueu
   window.serve([&] {
     if (!std::exchange(has_started, true)) on_start();
   });
-  watch_rounds(request, std::move(source), stop, window);
+  watch_rounds(request, std::move(source), stop, window, nullptr);
   shown.opened = window.opened();
   if (!has_started) {
     shown.diagnostics.push_back(fault(trf("{} cannot be replayed", arguments.options.text("LOG"))));

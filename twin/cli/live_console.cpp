@@ -11,6 +11,7 @@
 
 #include "base/translate.h"
 #include "twin/cli/console.h"
+#include "twin/live/live_text.h"
 #include "twin/report/shown_lengths.h"
 
 namespace kerf {
@@ -19,21 +20,10 @@ namespace {
 /// Findings printed one by one; the rest are only counted (and all are in --json).
 constexpr std::size_t kFindingsShown = 50;
 
-std::string time_text(double seconds) {
-  const auto whole = static_cast<long long>(std::llround(seconds));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
-}
-
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();
-}
-
-std::string age_text(double seconds) {
-  return seconds < 1 ? fmt::format("{:.0f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
 }
 
 }  // namespace
@@ -42,7 +32,7 @@ std::string status_line(const LiveStatus& status) {
   const ToolState& place = status.place;
   std::string out = tr(to_string(status.state));
   if (status.state == LiveState::kStale || status.state == LiveState::kLost) {
-    out += trf(" {} old", age_text(status.age_s));
+    out += trf(" {} old", short_age_text(status.age_s));
   }
   if (place.known) {
     out += fmt::format("  X{:.2f} Y{:.2f} Z{:.2f}", place.tip_mm.x, place.tip_mm.y, place.tip_mm.z);
@@ -57,7 +47,7 @@ std::string status_line(const LiveStatus& status) {
     out += trf("  {:.2f} mm off the path", status.off_path_mm);
   }
   if (place.followed && status.remaining_s >= 0) {
-    out += trf("  {} left", time_text(status.remaining_s));
+    out += trf("  {} left", time_left_text(status.remaining_s));
   }
   if (status.load) out += trf("  load {}", text_of(*status.load));
   if (status.collision_in_s >= 0) {

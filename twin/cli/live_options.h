@@ -15,6 +15,7 @@
 #include "twin/cli/work_options.h"
 #include "twin/config/live_config.h"
 #include "twin/live/live_session.h"
+#include "twin/serve/serve_address.h"
 #include "viewer/scene.h"
 
 namespace kerf {
@@ -32,6 +33,7 @@ struct LiveRequest {
   CompareRequest compare;  ///< what is left at the end with its design
   std::string record;
   std::string events;
+  std::optional<ServeAddress> serve;  ///< a page for who looks on
   double mesh_tolerance_mm = 0;
   std::string finding_png;       ///< a folder; empty: no pictures of findings
   double cpu_limit_percent = 0;  ///< 0: none

@@ -40,10 +40,11 @@ namespace kerf {
 namespace {
 
 constexpr const char* kSourceList = tr_noop(
-    "modbus   registers of a Modbus device, TCP or RTU (reads only)\n"
-    "can      signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
-    "hal      pins of the LinuxCNC that runs on this computer\n"
-    "log      recordings of kerf, CSV, halsampler files, candump -l files\n");
+    "modbus     registers of a Modbus device, TCP or RTU (reads only)\n"
+    "can        signals of a CAN bus by SocketCAN, by map or DBC file (sends nothing)\n"
+    "hal        pins of the LinuxCNC that runs on this computer\n"
+    "mtconnect  the agent of a machine, as LinuxCNC 2.10's (asks with GET alone)\n"
+    "log        recordings of kerf, CSV, halsampler files, candump -l files\n");
 
 std::string model_list() {
   std::string list;
@@ -82,7 +83,11 @@ int refuse_argument(const std::string& argument, const CLI::App& app, bool comma
   const std::string near = nearest_word(written, allowed);
   const bool is_of_run = app.get_name() == "job" && has_option(kRun, written);
   if (is_of_run) d.message += tr("; kerf run has it, for a single program");
-  if (!is_of_run && !near.empty()) d.message += trf("; did you mean {}?", near);
+  const bool is_beside_machine =
+      !is_of_run && has_option(kShadow, written) && has_option(kReplay, written);
+  if (is_beside_machine) d.message += tr("; kerf shadow and kerf replay have it");
+  if (!is_of_run && !is_beside_machine && !near.empty())
+    d.message += trf("; did you mean {}?", near);
   const std::string name = app.get_parent() ? "kerf " + app.get_name() : "kerf";
   d.hint = trf("{} --help lists what there is", name);
   kerf::print(stderr, "{}", to_string(d));
@@ -205,14 +210,17 @@ int run(int argc, char** argv) {
   speak_language(app, "kerf " + version_text());
   app.footer(std::string(examples_of_kerf()) + "\n" + tr(kExitCodes));
   app.allow_extras();
-  const Commands commands(app, std::vector<std::string>(argv, argv + argc));
+  std::vector<std::string> words = with_bare_options(std::vector<std::string>(argv, argv + argc));
+  const Commands commands(app, words);
   for (CLI::App* const command : commands.all) {
     for (CLI::Option* const option : command->get_options({})) {
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
     }
   }
   try {
-    app.parse(argc, argv);
+    words.erase(words.begin(), words.begin() + std::min(argc, 1));
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app.parse(std::move(words));
   } catch (const CLI::Success& success) {
     std::ostringstream text;
     const int code = app.exit(success, text, text);  // --help, --version

@@ -116,7 +116,7 @@ std::string bash_cases(Command command) {
     std::vector<std::string> names{std::string(setting->option)};
     if (!setting->short_name.empty()) names.insert(names.begin(), std::string(setting->short_name));
     all.insert(all.end(), names.begin(), names.end());
-    if (!setting->flag.empty()) continue;
+    if (!setting->flag.empty() || !setting->fallback_if_bare.empty()) continue;
     const std::string values = values_of(*setting);
     std::string action = ":";
     if (setting->option == "--set") action = "_kerf_keys";
@@ -171,7 +171,8 @@ std::string zsh_spec(const Setting& setting) {
   }
   std::string after = fmt::format("[{}]", in_spec(help_of(setting)));
   if (setting.flag.empty()) {
-    after += fmt::format(":{}:{}", in_spec(setting.value_name), zsh_action(setting));
+    after += fmt::format("{}:{}:{}", setting.fallback_if_bare.empty() ? "" : ":",
+                         in_spec(setting.value_name), zsh_action(setting));
   }
   if (!setting.short_name.empty()) {
     return fmt::format("{}{{{},{}}}{}",

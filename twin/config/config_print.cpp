@@ -387,6 +387,39 @@ struct SourcePrinter {
     printer.close();
   }
 
+  void operator()(const MtconnectSettings& s) const {
+    printer.text("url", s.url);
+    if (!s.device.empty()) printer.text("device", s.device);
+    printer.put("position", s.commanded ? "commanded" : "actual");
+    printer.put("interval_ms", s.interval_ms);
+    printer.put("heartbeat_ms", s.heartbeat_ms);
+    printer.put("gather_ms", s.gather_ms);
+    const auto text_of = [](const ChosenItem& chosen) {
+      return fmt::format("item: {}, scale: {}, offset: {}", quoted(chosen.item), chosen.scale,
+                         chosen.offset);
+    };
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < kMaxPositions; ++i) {
+      if (!s.axes[i]) continue;
+      lines.push_back(fmt::format("{}: {{{}}}", kAllAxes[i], text_of(*s.axes[i])));
+    }
+    const auto other = [&](const char* key, const std::optional<ChosenItem>& chosen) {
+      if (chosen) lines.push_back(fmt::format("{}: {{{}}}", key, text_of(*chosen)));
+    };
+    other("tool", s.tool);
+    other("line", s.line);
+    other("spindle", s.spindle);
+    other("tool_offset_z", s.tool_offset_z);
+    if (s.load) {
+      lines.push_back(
+          fmt::format("load: {{{}, unit: {}}}", text_of(*s.load), word_of(s.load_unit)));
+    }
+    if (lines.empty()) return;
+    printer.open("map");
+    for (const std::string& line : lines) printer.line(line);
+    printer.close();
+  }
+
   void operator()(const LogSettings& settings) const {
     constexpr std::array kFormats{"auto", "recording", "csv", "halsampler", "candump"};
     printer.text("file", settings.path);
@@ -416,7 +449,7 @@ bool in_inches(const ConfigSource& source) {
 
 void print_source(Printer& printer, const LiveConfig& config) {
   if (std::holds_alternative<std::monostate>(config.source)) return;
-  constexpr std::array kTypes{"", "modbus", "can", "hal", "log"};
+  constexpr std::array kTypes{"", "modbus", "can", "hal", "log", "mtconnect"};
   constexpr std::array kGaps{"mark", "cut", "ignore"};
   const ConfigSourceCommon& common = config.common;
   printer.open("source");

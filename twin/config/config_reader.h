@@ -102,6 +102,8 @@ void read_can(const GroupReader& source, const MapReading& reading, CanSourceOpt
 void read_can_map(const GroupReader& source, const MapReading& reading, CanMap& map);
 void read_hal(const GroupReader& source, const ConfigSourceCommon& common, bool inch,
               HalSettings& settings);
+void read_mtconnect(const GroupReader& source, const ConfigSourceCommon& common,
+                    const MapReading& reading, MtconnectSettings& settings);
 void read_log(const GroupReader& source, const MapReading& reading, LogSettings& settings);
 
 /// Faults that a source found in its settings ("map.X.scale: 0 is not allowed"), each at the value

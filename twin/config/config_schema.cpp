@@ -65,6 +65,7 @@ std::string sources_of(const Setting& spec) {
   add(kForCan, "can");
   add(kForHal, "hal");
   add(kForLog, "log");
+  add(kForMtconnect, "mtconnect");
   return text + "] ";
 }
 

@@ -30,6 +30,7 @@ std::string source_names(std::uint8_t mask) {
   if ((mask & kForCan) != 0) names.emplace_back("can");
   if ((mask & kForHal) != 0) names.emplace_back("hal");
   if ((mask & kForLog) != 0) names.emplace_back("log");
+  if ((mask & kForMtconnect) != 0) names.emplace_back("mtconnect");
   return fmt::format("{}", fmt::join(names, tr(" and ")));
 }
 
@@ -354,6 +355,7 @@ std::uint8_t source_type_of(const ConfigNode& root) {
   if (type->scalar == "can") return kForCan;
   if (type->scalar == "hal") return kForHal;
   if (type->scalar == "log") return kForLog;
+  if (type->scalar == "mtconnect") return kForMtconnect;
   return kForAny;
 }
 

@@ -15,6 +15,7 @@
 #include "machine_io/hal/hal_source.h"
 #include "machine_io/logs/log_source.h"
 #include "machine_io/modbus/modbus_settings.h"
+#include "machine_io/mtconnect/mtconnect_settings.h"
 #include "machine_io/recorder.h"
 #include "stock/blank.h"
 #include "stock/cutter/shape_spec.h"
@@ -108,8 +109,8 @@ struct ConfigSourceCommon {
   std::optional<CoordinateKind> coordinates;
 };
 
-using ConfigSource =
-    std::variant<std::monostate, ModbusSettings, CanSourceOptions, HalSettings, LogSettings>;
+using ConfigSource = std::variant<std::monostate, ModbusSettings, CanSourceOptions, HalSettings,
+                                  LogSettings, MtconnectSettings>;
 
 /// A whole configuration as plain values, all checked. Paths are as good as they can be from the
 /// current folder: those that the file gives relative to itself have its folder in front. Lengths

@@ -6,6 +6,7 @@
 
 #include "base/translate.h"
 #include "machine_io/modbus/modbus_source.h"
+#include "machine_io/mtconnect/mtconnect_source.h"
 #include "twin/config/key_table.h"
 
 namespace kerf {
@@ -44,6 +45,9 @@ struct Maker {
   }
   std::unique_ptr<PositionSource> operator()(const CanSourceOptions& options) const {
     return std::make_unique<CanSource>(options);
+  }
+  std::unique_ptr<PositionSource> operator()(const MtconnectSettings& settings) const {
+    return std::make_unique<MtconnectSource>(settings);
   }
   std::unique_ptr<PositionSource> operator()(HalSettings settings) const {
     settings.rotary_joints = rotary_joints(config.machine);
@@ -93,6 +97,8 @@ std::optional<LoadUnit> load_unit_of(const LiveConfig& config, const PositionSou
     return unit_if(modbus->load, modbus->load_unit);
   if (const auto* can = std::get_if<CanSourceOptions>(&config.source))
     return unit_if(can->map.load, can->map.load_unit);
+  if (const auto* agent = std::get_if<MtconnectSettings>(&config.source))
+    return unit_if(agent->load, agent->load_unit);
   const auto* const hal = std::get_if<HalSettings>(&config.source);
   return hal && hal->load ? std::optional(hal->load->unit) : std::nullopt;
 }

@@ -35,7 +35,8 @@ enum SourceMask : std::uint8_t {
   kForCan = 2,
   kForHal = 4,
   kForLog = 8,
-  kForAny = 15,
+  kForMtconnect = 16,
+  kForAny = 31,
 };
 
 /// Commands, as bits: which of them have an option.
@@ -88,6 +89,8 @@ struct Setting {
   const char* refusal = "";       ///< of a word: "'{}' is no policy; allowed: {}". tr() shows it
   /// It takes no value; where it is written, this is it: "yes", "no".
   std::string_view flag{};
+  /// It may be written without a value; then it is this. No file is meant by it.
+  std::string_view fallback_if_bare{};
   bool repeatable = false;
   bool required = false;
   /// "--kerf|--beam": where the command line has one of these, the key does not count.

@@ -14,11 +14,11 @@ constexpr double kFactor = 1e12;  // counts are at most 2^64, lengths at least 1
 
 constexpr std::array kMapSettings{
     Setting{.key = "source.map",
-            .sources = kMapped | kForHal,
+            .sources = kMapped | kForHal | kForMtconnect,
             .purpose = tr_noop("which numbers are which positions")},
     Setting{
         .key = "source.map.ITEM",
-        .sources = kMapped | kForHal,
+        .sources = kMapped | kForHal | kForMtconnect,
         .purpose = tr_noop(
             "ITEM: X Y Z A B C U V W or J0 .. J8, tool, line, spindle, tool_offset_z, trigger (a "
             "punch's: 0 is off), or load (of the spindle, by its drive; of hal load alone)")},
@@ -149,7 +149,7 @@ constexpr std::array kMapSettings{
             .purpose = tr_noop("what they must hold")},
     Setting{.key = "source.map.ITEM.unit",
             .type = T::kWord,
-            .sources = kMapped | kForHal,
+            .sources = kMapped | kForHal | kForMtconnect,
             .words = "percent|percent-torque|kW|Nm|A",
             .purpose = tr_noop("of the load: percent of the rated power or torque "
                                "(machine.spindle_power_kw, spindle_torque_nm), power, torque, or "
@@ -160,9 +160,14 @@ constexpr std::array kMapSettings{
             .sources = kForHal | kForLog,
             .purpose = tr_noop("HAL pin that has the load; of a CSV file the name of its column"),
             .load_only = true},
+    Setting{.key = "source.map.ITEM.item",
+            .type = T::kText,
+            .sources = kForMtconnect,
+            .purpose = tr_noop("id or name of a data item, instead of the one that /probe leads "
+                               "to; load has no other")},
     Setting{.key = "source.map.ITEM.scale",
             .type = T::kNumber,
-            .sources = kMapped | kForHal,
+            .sources = kMapped | kForHal | kForMtconnect,
             .unit = "mm, degrees, rpm",
             .least = -kFactor,
             .most = kFactor,
@@ -170,7 +175,7 @@ constexpr std::array kMapSettings{
             .purpose = tr_noop("per count or turn; not 0. Multiplies the scale of a DBC signal")},
     Setting{.key = "source.map.ITEM.offset",
             .type = T::kNumber,
-            .sources = kMapped | kForHal,
+            .sources = kMapped | kForHal | kForMtconnect,
             .unit = "mm, degrees, rpm",
             .least = -kFactor,
             .most = kFactor,

@@ -19,6 +19,14 @@ constexpr std::array kOutputSettings{
             .type = T::kFile,
             .help = tr_noop("states, findings and warnings as JSON lines"),
             .value_name = "FILE"},
+    Setting{.option = "--serve",
+            .commands = kBesideMachine,
+            .type = T::kText,
+            .help = tr_noop("a page for tablets and desks that look on: an address of this "
+                            "computer, its port, or both; alone: 127.0.0.1:8734, for this "
+                            "computer; of another address a link with a token is printed"),
+            .value_name = "[ADDR:PORT]",
+            .fallback_if_bare = "127.0.0.1:8734"},
     Setting{.option = "--json",
             .commands = kRun | kBesideMachine,
             .type = T::kFile,

@@ -124,6 +124,8 @@ void read_kind(const GroupReader& source, const MapReading& reading, LiveConfig&
     read_hal(source, config.common, reading.inch, config.source.emplace<HalSettings>());
   } else if (type == "log") {
     read_log(source, reading, config.source.emplace<LogSettings>());
+  } else if (type == "mtconnect") {
+    read_mtconnect(source, config.common, reading, config.source.emplace<MtconnectSettings>());
   }
 }
 
@@ -289,7 +291,7 @@ void read_hal(const GroupReader& source, const ConfigSourceCommon& common, bool 
 
 void read_source(const GroupReader& source, LiveConfig& config) {
   if (!source.is_there()) return;
-  source.missing("type", tr("one of modbus, can, hal, log"));
+  source.missing("type", tr("one of modbus, can, hal, log, mtconnect"));
   read_common(source, config.common);
   MapReading reading;
   reading.kind = config.common.coordinates.value_or(CoordinateKind::kAxes);

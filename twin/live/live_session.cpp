@@ -266,7 +266,8 @@ void LiveSession::read_source(std::stop_token stop) {
       continue;
     }
     if (options_.log()) pace_.wait_for(sample, stop);
-    ArrivedSample arrived{sample, Clock::now(), source_->status().lost};
+    ArrivedSample arrived{sample, Clock::now() - std::chrono::nanoseconds(sample.age_ns),
+                          source_->status().lost};
     if (!options_.log() && sample.host_ns != AxisSample::kNoTime) {
       arrived.clock_set_ns = clock_watch_.set_by(sample.host_ns, steady_ns(arrived.arrival));
     }
@@ -453,7 +454,7 @@ void LiveSession::extend_trail() {
 void LiveSession::show_frame() {
   if (!shows_frames_ || samples_ == frame_samples_) return;
   const auto now = Clock::now();
-  if (now - frame_at_ < kFramePeriod) return;
+  if (now - frame_at_ < frame_period_) return;
   frame_at_ = now;
   frame_samples_ = samples_;
   shift_->hand_over();
@@ -479,7 +480,8 @@ void LiveSession::cut_samples(const std::stop_token& stop) {
   }
   std::vector<ArrivedSample> batch;
   // The newest sample of a batch that came too soon after a frame is shown when the wait is over.
-  const auto patience = shows_frames_ ? kFramePeriod : std::chrono::milliseconds(20);
+  constexpr std::chrono::milliseconds kCalm{20};
+  const auto patience = shows_frames_ ? std::min(frame_period_, kCalm) : kCalm;
   while (queue_.pop_all(batch, patience)) {
     for (const ArrivedSample& arrived : batch) {
       take(arrived);
@@ -511,6 +513,7 @@ Outcome LiveSession::run(std::stop_token stop, Diagnostics& diagnostics) {
   report_.program_path = options_.program ? options_.program->path : std::string();
   live_.source = source_->describe();
   shows_frames_ = observer_ && observer_->wants_frames();
+  if (shows_frames_) frame_period_ = observer_->frame_period();
   const double cpu_before = thread_cpu_s();
   cut_samples(stop);
   last_state_ = state_now(first_ ? seconds(Clock::now() - newest_.arrival) : 0);

@@ -111,7 +111,10 @@ class LiveObserver {
   virtual void on_run(const LiveRun& run) { static_cast<void>(run); }
   /// Asked once, before the first sample: on_frame() is wanted.
   virtual bool wants_frames() const { return false; }
-  /// After samples were taken, as soon as kFramePeriod has passed since the last call: for windows.
+  /// How often; asked once as well.
+  virtual std::chrono::milliseconds frame_period() const { return kFramePeriod; }
+  static constexpr std::chrono::milliseconds kFramePeriod{8};
+  /// After samples were taken, as soon as frame_period() has passed since the last call: for views.
   /// `stock` during the call only; its snapshot() has all samples. `cutter`: in the spindle, null
   /// as long as none that is known was needed.
   /// `trail`: where the tip has been since the last call, points farther apart than kTrail_mm.
@@ -139,7 +142,6 @@ using SampleTap = std::function<void(const TappedSample&)>;
 class LiveSession {
  public:
   static constexpr std::chrono::milliseconds kStatusPeriod{100};
-  static constexpr std::chrono::milliseconds kFramePeriod{8};
 
   /// Checks all that can be checked beforehand. Null on error, with diagnostics; `outcome` says of
   /// which kind.
@@ -233,6 +235,7 @@ class LiveSession {
   LiveState last_state_ = LiveState::kWaiting;  ///< when it was stopped
   Clock::time_point told_at_;
   bool shows_frames_ = false;
+  std::chrono::milliseconds frame_period_{0};
   Clock::time_point frame_at_;
   std::uint64_t frame_samples_ = 0;  ///< those that the last frame had
   std::vector<Vec3> trail_;          ///< since the last frame

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "base/translate.h"
+#include "twin/live/live_text.h"
 #include "twin/machine/kinematics/work_frame.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/moment_values.h"
@@ -45,23 +46,6 @@ SourceFreshness freshness_of(LiveState state) {
       return SourceFreshness::kNone;
   }
   return SourceFreshness::kNone;
-}
-
-std::string notice_of(const LiveStatus& status) {
-  if (status.state == LiveState::kWaiting) {
-    return status.source.trouble.empty() ? tr("waiting for positions") : status.source.trouble;
-  }
-  if (!status.place.missing_axes.empty() && !status.place.known) {
-    return trf("no position of {}", status.place.missing_axes);
-  }
-  if (status.collision_in_s >= 0) {
-    return trf("collision in {:.1f} s, line {}", status.collision_in_s, status.collision_line);
-  }
-  if (status.off_path_mm > 0) return trf("off the path by {:.2f} mm", status.off_path_mm);
-  if (!status.source.trouble.empty() && status.source.state != SourceState::kReading) {
-    return status.source.trouble;
-  }
-  return status.state == LiveState::kEnded ? tr("the log is at its end") : std::string();
 }
 
 }  // namespace

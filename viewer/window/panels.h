@@ -226,6 +226,8 @@ void draw_point_tab(const PanelContext& context);
 /// `corner_px`.
 void draw_inspection(const PanelContext& context, const Projection& projection,
                      glm::vec2 corner_px);
+/// What the colours of moves mean, in the picture's lower left corner, if there is room.
+void draw_scene_legend(const PanelContext& context, glm::vec2 corner_px, glm::vec2 size_px);
 
 /// Asks the owner of the workpiece for the colours that are set.
 ColorCommand color_command(const ViewSettings& settings, const PanelState& state);

@@ -71,6 +71,8 @@ void draw_objects(const PanelContext& context) {
   }
 }
 
+ImU32 opaque(const ColorLegendEntry& entry) { return entry.color | 0xff000000u; }
+
 void draw_legend(const PanelContext& context) {
   const float side = ImGui::GetTextLineHeight();
   for (const ColorLegendEntry& entry : context.legend) {
@@ -78,8 +80,7 @@ void draw_legend(const PanelContext& context) {
     const float unit = context.scale;
     ImGui::GetWindowDrawList()->AddRectFilled(
         {at.x + 4.0f * unit, at.y + 2.0f * unit},
-        {at.x + 4.0f * unit + 1.4f * side, at.y + side - unit}, entry.color | 0xff000000u,
-        2.0f * unit);
+        {at.x + 4.0f * unit + 1.4f * side, at.y + side - unit}, opaque(entry), 2.0f * unit);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2.0f * side);
     ImGui::TextUnformatted(entry.text.c_str());
   }
@@ -110,6 +111,10 @@ void draw_color_targets(const PanelContext& context) {
   for (std::size_t i = 0; i < kColorTargets.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     const auto target = static_cast<ColorTarget>(i);
+    // The last one in a narrow panel, where words are long, is on a line of its own.
+    const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
+                        ImGui::CalcTextSize(context.word(kColorTargets[i])).x;
+    if (i > 0 && ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
     if (ImGui::RadioButton(context.word(kColorTargets[i]), target == drawing.color_on))
       drawing.color_on = target;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s  [V]", context.word(Text::kColorOn));
@@ -408,6 +413,32 @@ void choose_section(const SectionChoice& choice, const Box& bounds_mm, bool turn
   const int beside = choice.axis == kY ? 0 : kY;
   drawing->section_beside = plane_across(
       beside, 0.5 * (bounds_mm.min[beside] + bounds_mm.max[beside]), beside == 0 || turns);
+}
+
+void draw_scene_legend(const PanelContext& context, glm::vec2 corner_px, glm::vec2 size_px) {
+  const ColorBy mode = context.settings->drawing.color_by;
+  if (!is_by_move(mode) || context.legend.empty()) return;
+  const std::string title = context.word(kColorNames[static_cast<std::size_t>(mode)]);
+  const float line = ImGui::GetTextLineHeightWithSpacing(), border = 6.0f * context.scale;
+  const float swatch = 1.4f * ImGui::GetTextLineHeight();
+  float width = ImGui::CalcTextSize(title.c_str()).x;
+  for (const ColorLegendEntry& entry : context.legend)
+    width = std::max(width, swatch + border + ImGui::CalcTextSize(entry.text.c_str()).x);
+  const auto lines = static_cast<float>(context.legend.size() + 1);
+  const ImVec2 box(width + 2 * border, lines * line + 2 * border);
+  if (box.x + 2 * border > size_px.x || box.y + 2 * border > 0.6f * size_px.y) return;
+  const ImVec2 low(corner_px.x + border, corner_px.y + size_px.y - border - box.y);
+  ImDrawList* const list = ImGui::GetBackgroundDrawList();
+  list->AddRectFilled(low, {low.x + box.x, low.y + box.y}, IM_COL32(20, 24, 30, 205), border);
+  ImVec2 at(low.x + border, low.y + border);
+  list->AddText(at, IM_COL32_WHITE, title.c_str());
+  for (const ColorLegendEntry& entry : context.legend) {
+    at.y += line;
+    list->AddRectFilled({at.x, at.y + 2 * context.scale},
+                        {at.x + swatch, at.y + ImGui::GetTextLineHeight() - context.scale},
+                        opaque(entry), 2 * context.scale);
+    list->AddText({at.x + swatch + border, at.y}, IM_COL32_WHITE, entry.text.c_str());
+  }
 }
 
 }  // namespace kerf

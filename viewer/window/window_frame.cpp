@@ -159,6 +159,7 @@ void Window::Impl::apply(const SceneUpdate& update) {
   if (update.timeline) shown_.timeline = update.timeline;
   if (update.clears) shown_.curves.reset();
   if (update.curves) shown_.curves = update.curves;
+  if (update.colors) touched();  // their legend
   if (update.picked) shown_.picked = update.picked;
   if (update.entry) {
     shown_.entry = update.entry;
@@ -396,6 +397,7 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
                              .state = &state_,
                              .commands = &commands_,
                              .measures = measures};
+  draw_scene_legend(context, area_top_px_, projection_.size_px);
   draw_inspection(context, projection_, area_top_px_);
   if (state_.shows_entry) draw_entry_way(context, projection_, area_top_px_);
   draw_code_panel(context, display, room);

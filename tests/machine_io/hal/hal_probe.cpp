@@ -50,9 +50,10 @@ int main(int argc, char** argv) {
     before = now;
     if (next == kerf::PositionSource::Next::kEnd) break;
     if (next != kerf::PositionSource::Next::kSample) continue;
-    samples.print("{} {} {} {} {} {} {} {} {} {} {}\n", sample.host_ns, sample.device_ns, sample.known,
-                  sample.tool, sample.line, sample.tool_offset_z_mm, sample.spindle_rpm,
-                  sample.position[0], sample.position[1], sample.position[2], sample.load);
+    samples.print("{} {} {} {} {} {} {} {} {} {} {}\n", sample.host_ns, sample.device_ns,
+                  sample.known, sample.tool, sample.line, sample.tool_offset_z_mm,
+                  sample.spindle_rpm, sample.position[0], sample.position[1], sample.position[2],
+                  sample.load);
   }
   const kerf::SourceStatus& status = source.status();
   states.print("samples {} errors {} reconnects {} lost {}\n", status.samples, status.errors,

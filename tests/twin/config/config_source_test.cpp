@@ -32,9 +32,10 @@ TEST(ConfigSource, CommonKeys) {
 
 TEST(ConfigSource, TypeIsNeeded) {
   EXPECT_EQ(said_of("source:\n  gap: cut\n"),
-            "1:1: source: type is missing; must be one of modbus, can, hal, log\n");
+            "1:1: source: type is missing; must be one of modbus, can, hal, log, mtconnect\n");
   EXPECT_EQ(said_of("source:\n  type: modbuss\n  poll_hz: 3\n"),
-            "2:9: source.type: 'modbuss' is not allowed; must be one of modbus, can, hal, log (did "
+            "2:9: source.type: 'modbuss' is not allowed; must be one of modbus, can, hal, log, "
+            "mtconnect (did "
             "you mean modbus?)\n");
 }
 

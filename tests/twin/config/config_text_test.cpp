@@ -155,7 +155,7 @@ TEST(ConfigSet, Faults) {
             "it\n");
   EXPECT_EQ(said_of("", {"stock.cell_mm=\xff"}), "--set value: not UTF-8\n");
   EXPECT_EQ(said_of("", {"source.poll_hz=5"}),
-            "--set source: type is missing; must be one of modbus, can, hal, log\n");
+            "--set source: type is missing; must be one of modbus, can, hal, log, mtconnect\n");
 }
 
 }  // namespace
