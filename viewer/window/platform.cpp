@@ -16,6 +16,9 @@
 #include "viewer/window/glfw_library.h"
 #include "viewer/window/scene_renderer.h"
 
+/// As Xlib calls it.
+struct _XDisplay;
+
 namespace kerf {
 namespace {
 
@@ -49,7 +52,6 @@ std::atomic<bool> display_is_lost = false;
 /// part of the window knows which window system it has. Without XSetIOErrorExitHandler (libX11
 /// before 1.7) it stays as it was.
 void survive_lost_display() {
-  struct _XDisplay;  // as Xlib calls it
   using ErrorHandler = int (*)(_XDisplay*);
   using ExitHandler = void (*)(_XDisplay*, void*);
   const auto set_handler =
@@ -72,7 +74,7 @@ void survive_lost_display() {
 /// What Xlib tells of a request that failed, as Xlib lays it out.
 struct XError {
   int type;
-  struct _XDisplay* display;
+  _XDisplay* display;
   unsigned long resource;
   unsigned long serial;
   unsigned char code, request, minor;
@@ -86,7 +88,7 @@ std::atomic<bool> window_is_gone = false;
 /// another program has destroyed. To be called when the window is there: GLFW sets Xlib's own way
 /// of failing again while it makes one.
 void survive_destroyed_window(GLFWwindow* window) {
-  using ErrorHandler = int (*)(struct _XDisplay*, const XError*);
+  using ErrorHandler = int (*)(_XDisplay*, const XError*);
   const auto set_handler =
       reinterpret_cast<ErrorHandler (*)(ErrorHandler)>(dlsym(RTLD_DEFAULT, "XSetErrorHandler"));
   const auto get_id =
@@ -94,7 +96,7 @@ void survive_destroyed_window(GLFWwindow* window) {
   if (set_handler == nullptr || get_id == nullptr) return;
   window_id = get_id(window);
   if (window_id == 0) return;
-  set_handler([](struct _XDisplay*, const XError* error) {
+  set_handler([](_XDisplay*, const XError* error) {
     const bool is_ours = error->code == kBadWindow || error->code == kBadDrawable;
     if (is_ours && error->resource == window_id) window_is_gone = true;
     return 0;
@@ -153,9 +155,9 @@ void fit_on_screens(GLFWwindow* window) {
 /// GLX_MESA_copy_sub_buffer: copies a rectangle of the back buffer, of which nothing else is
 /// touched or asked. Looked up by name like the rest of Xlib.
 struct Platform::Parts {
-  using Copy = void (*)(struct _XDisplay*, unsigned long, int, int, int, int);
+  using Copy = void (*)(_XDisplay*, unsigned long, int, int, int, int);
   Copy copy;
-  struct _XDisplay* display;
+  _XDisplay* display;
   unsigned long drawable;
 };
 
@@ -164,7 +166,7 @@ void Platform::find_parts(GLFWwindow* window) {
   if (glfwExtensionSupported("GLX_MESA_copy_sub_buffer") != GLFW_TRUE) return;
   const auto copy = reinterpret_cast<Parts::Copy>(glfwGetProcAddress("glXCopySubBufferMESA"));
   const auto get_display =
-      reinterpret_cast<struct _XDisplay* (*)()>(dlsym(RTLD_DEFAULT, "glfwGetX11Display"));
+      reinterpret_cast<_XDisplay* (*)()>(dlsym(RTLD_DEFAULT, "glfwGetX11Display"));
   const auto get_drawable =
       reinterpret_cast<unsigned long (*)(GLFWwindow*)>(dlsym(RTLD_DEFAULT, "glfwGetGLXWindow"));
   if (copy == nullptr || get_display == nullptr || get_drawable == nullptr) return;
