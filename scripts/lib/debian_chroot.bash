@@ -2,6 +2,8 @@
 
 chroot_cache=${KERF_CHROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/kerf-chroots}
 debian_mirror=${KERF_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+# Folders of ours that are seen in there, FOLDER:WHERE each.
+chroot_binds=()
 
 # need PROGRAM PACKAGE: ends the script where it is missing.
 need() {
@@ -35,7 +37,7 @@ in_chroot() {
   local folder=$1
   shift
   cp /etc/resolv.conf "$folder/etc/resolv.conf" 2>/dev/null || true
-  unshare --mount --pid --fork --kill-child -- /bin/bash -c '
+  CHROOT_BINDS="${chroot_binds[*]}" unshare --mount --pid --fork --kill-child -- /bin/bash -c '
     set -e
     mount --make-rprivate /
     mount -t proc proc "$0/proc"
@@ -44,6 +46,7 @@ in_chroot() {
     ln -s /proc/self/fd "$0/dev/fd"
     mkdir "$0/dev/shm" "$0/dev/pts"
     mount -t tmpfs tmpfs "$0/dev/shm"
+    for bind in $CHROOT_BINDS; do mkdir -p "$0${bind#*:}"; mount --bind "${bind%%:*}" "$0${bind#*:}"; done
     exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
   ' "$folder" "$@"
 }
@@ -53,4 +56,16 @@ install_in() {
   local folder=$1
   shift
   in_chroot "$folder" apt-get -q -o Acquire::Retries=3 install -y --no-install-recommends "$@"
+}
+
+# use_ccache SUITE FOLDER: what is compiled in that folder from now on is kept in $chroot_cache/ccache/SUITE, and found there.
+use_ccache() {
+  mkdir -p "$chroot_cache/ccache/$1"
+  chroot_binds+=("$chroot_cache/ccache/$1:/root/.cache/ccache")
+  [[ -x $2/usr/bin/ccache ]] || install_in "$2" ccache >/dev/null
+}
+
+# no_ccache FOLDER: what is compiled in that folder is compiled by the compiler. kerf's CMakeLists.txt takes a ccache that it finds.
+no_ccache() {
+  [[ ! -x $1/usr/bin/ccache ]] || in_chroot "$1" apt-get -q purge -y ccache >/dev/null
 }
