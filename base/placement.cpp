@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -30,7 +32,7 @@ Placement Placement::turned(const Vec3& xyz_deg) {
   for (int axis = 0; axis < 3; ++axis) {
     if (xyz_deg[axis] == 0) continue;
     const double quarters = xyz_deg[axis] / 90;
-    double c = std::cos(xyz_deg[axis] * kPi / 180), s = std::sin(xyz_deg[axis] * kPi / 180);
+    auto [s, c] = portable::sin_cos(xyz_deg[axis] * kPi / 180);
     if (quarters == std::round(quarters)) {
       c = std::round(c);
       s = std::round(s);

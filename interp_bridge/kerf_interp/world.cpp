@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/portable_math.h"
+
 namespace kerf::interp {
 namespace {
 
@@ -77,8 +79,8 @@ Pose World::scaled(const Pose& program_units) const {
 void World::set_rotation(double degrees) {
   rotation_deg = degrees;
   const double radians = degrees * 3.14159265358979323846 / 180.0;
-  cos_ = std::cos(radians);
-  sin_ = std::sin(radians);
+  cos_ = portable::cos(radians);
+  sin_ = portable::sin(radians);
 }
 
 double World::tool_offset(std::size_t axis) const {

@@ -33,7 +33,7 @@ void LoadedFile::wait(std::chrono::milliseconds patience) {
   if (poll(waits.data(), waits.size(), static_cast<int>(patience.count())) <= 0) return;
   if (waits[1].revents != 0) {
     std::array<char, 512> said{};  // why it ends, which kerf-hal says as well
-    static_cast<void>(read(child_->messages_fd(), said.data(), said.size()));
+    [[maybe_unused]] const ssize_t got = read(child_->messages_fd(), said.data(), said.size());
   }
   if (waits[0].revents != 0) take_lines();
 }

@@ -10,6 +10,15 @@
 namespace kerf {
 namespace {
 
+/// Before 2.9 expat counts lines by a type that it warns of since.
+auto parser_line(XML_Parser parser) {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+  return XML_GetCurrentLineNumber64(parser);
+#else
+  return XML_GetCurrentLineNumber(parser);
+#endif
+}
+
 std::string_view without_prefix(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   return colon == name.npos ? name : name.substr(colon + 1);
@@ -48,7 +57,7 @@ class XmlBuilder {
  private:
   void fail(std::string_view what) {
     if (!fault_.empty()) return;
-    fault_ = trf("line {}: {}", XML_GetCurrentLineNumber(parser_), what);
+    fault_ = trf("line {}: {}", parser_line(parser_), what);
     XML_StopParser(parser_, XML_FALSE);
   }
 

@@ -2,6 +2,8 @@
 
 chroot_cache=${KERF_CHROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/kerf-chroots}
 debian_mirror=${KERF_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+# A mirror that was copied long ago says itself that it is not to be trusted any more; set this to something if you do.
+debian_old_mirror=${KERF_DEBIAN_OLD_MIRROR:-}
 # Folders of ours that are seen in there, FOLDER:WHERE each.
 chroot_binds=()
 
@@ -21,6 +23,7 @@ bare_chroot() {
     # Services have no business in it.
     printf '#!/bin/sh\nexit 101\n' >"$folder.new/usr/sbin/policy-rc.d"
     chmod +x "$folder.new/usr/sbin/policy-rc.d"
+    [[ ! $debian_old_mirror ]] || echo 'Acquire::Check-Valid-Until "false";' >"$folder.new/etc/apt/apt.conf.d/90old-mirror"
     mv "$folder.new" "$folder"
   fi
   echo "$folder"

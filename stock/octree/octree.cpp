@@ -81,10 +81,23 @@ bool is_lowest_at_axis(const Cutter& cutter) {
   });
 }
 
+/// What a value's second digit counts: 0.01 of 0.37. By logarithms it would go by the processor at
+/// powers of ten, and the cell with it.
+double second_digit(double value) {
+  constexpr double kMost = 1e20;  // an exact number, as is each power of ten below
+  double power = 1;
+  if (value >= 1) {
+    while (power < kMost && power * 10 <= value) power *= 10;
+    return power / 10;
+  }
+  while (power < kMost && 1 / power > value) power *= 10;
+  return 1 / (power * 10);
+}
+
 /// The smallest cell, rounded up to two digits, that keeps within the limit.
 double fitting_cell(const Box& box, double cell, double limit) {
   while (needed_bytes(Lattice::over(box, cell)) > limit) {
-    const double digit = std::pow(10.0, std::floor(std::log10(cell)) - 1);
+    const double digit = second_digit(cell);
     cell = (std::floor(cell / digit + 1e-9) + 1) * digit;
   }
   return cell;
@@ -94,7 +107,7 @@ double fitting_cell(const Box& box, double cell, double limit) {
 /// other.
 double layers_cell(double height_mm) {
   const double cell = height_mm / kMostLayers;
-  const double digit = std::pow(10.0, std::floor(std::log10(cell)) - 1);
+  const double digit = second_digit(cell);
   return std::ceil(cell / digit - 1e-9) * digit;
 }
 

@@ -74,7 +74,8 @@ class Builder {
     } else {
       // Where the circles of both ends meet: on the bisector, opposite to the arc's middle.
       const double half = sweep / 2;
-      const double root = radius_ * radius_ - std::pow(arc_radius * portable::sin(half), 2);
+      const double sideways = arc_radius * portable::sin(half);
+      const double root = radius_ * radius_ - sideways * sideways;
       const double reach = std::sqrt(std::max(root, 0.0)) - arc_radius * portable::cos(half);
       const Vec2 meeting = center - reach * direction(a0 + half);
       const auto angle_from = [&](const Vec2& middle) {

@@ -69,6 +69,7 @@ extern "C" {
 KERF_GLFW_0(int, glfwInit)
 KERF_GLFW_0(void, glfwTerminate)
 KERF_GLFW_1(GLFWerrorfun, glfwSetErrorCallback, GLFWerrorfun)
+KERF_GLFW_1(int, glfwGetError, const char**)
 KERF_GLFW_1(int, glfwExtensionSupported, const char*)
 KERF_GLFW_1(GLFWglproc, glfwGetProcAddress, const char*)
 KERF_GLFW_0(double, glfwGetTime)
