@@ -6,6 +6,8 @@ debian_mirror=${KERF_DEBIAN_MIRROR:-http://deb.debian.org/debian}
 debian_old_mirror=${KERF_DEBIAN_OLD_MIRROR:-}
 # Folders of ours that are seen in there, FOLDER:WHERE each.
 chroot_binds=()
+# NAME=VALUE each, of what runs in there.
+chroot_environment=()
 
 # need PROGRAM PACKAGE: ends the script where it is missing.
 need() {
@@ -51,7 +53,7 @@ in_chroot() {
     mount -t tmpfs tmpfs "$0/dev/shm"
     for bind in $CHROOT_BINDS; do mkdir -p "$0${bind#*:}"; mount --bind "${bind%%:*}" "$0${bind#*:}"; done
     exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
-  ' "$folder" "$@"
+  ' "$folder" "${chroot_environment[@]}" "$@"
 }
 
 # install_in FOLDER PACKAGE..: without what is only recommended.
@@ -64,7 +66,8 @@ install_in() {
 # use_ccache SUITE FOLDER: what is compiled in that folder from now on is kept in $chroot_cache/ccache/SUITE, and found there.
 use_ccache() {
   mkdir -p "$chroot_cache/ccache/$1"
-  chroot_binds+=("$chroot_cache/ccache/$1:/root/.cache/ccache")
+  chroot_binds+=("$chroot_cache/ccache/$1:/ccache")
+  chroot_environment+=("CCACHE_DIR=/ccache")  # debhelper has a HOME of its own for each build
   [[ -x $2/usr/bin/ccache ]] || install_in "$2" ccache >/dev/null
 }
 
