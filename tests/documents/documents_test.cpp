@@ -130,6 +130,7 @@ TEST(Documents, EveryOptionIsExplainedSomewhereAndNoneIsInvented) {
       read_file(kRoot / "scripts/format_check") + read_file(kRoot / "tests/truth/run_truth") +
       read_file(kRoot / "check") + read_file(kRoot / "examples/ci/kerf.yml") +
       read_file(kRoot / "examples/ci/pre-commit") + read_file(kRoot / "scripts/make_packages") +
+      read_file(kRoot / "scripts/check_platforms") +
       read_file(kRoot / "scripts/update_translations") +
       read_file(kRoot / "configs/vismach_links") +
       read_file(kRoot / "tests/twin/compare/planted/run_planted");
