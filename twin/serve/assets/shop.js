@@ -287,7 +287,7 @@ function showState() {
   if (!state) { badge.textContent = isCut ? texts.no_answer : texts.connecting; badge.className = isCut ? "cut" : "waiting"; return; }
   const age = state.age_s + (performance.now() - received) / 1000;
   badge.className = isCut ? "cut" : state.state;
-  badge.textContent = isCut ? texts.no_answer : state.state === "ended" || state.state === "waiting" ? state.state_text : `${state.state_text}, ${fill(texts.old, ageText(age))}`;
+  badge.textContent = isCut ? texts.no_answer : state.age_s === null ? state.state_text : `${state.state_text}, ${fill(texts.old, ageText(age))}`;
 }
 
 function showNews(news) {
@@ -308,6 +308,7 @@ function showNews(news) {
   by("alarm").hidden = !news.notice;
   by("alarm").textContent = news.notice || "";
   by("alarm").className = news.is_alarm ? "" : "warning";
+  while (by("findings").children.length > news.findings_from) by("findings").lastChild.remove();
   for (const finding of news.findings) {
     const made = item("li", finding.text, finding.severity);
     if (finding.line > 0) made.append(item("small", `${finding.file} ${fill(texts.line, finding.line)}`));
