@@ -15,6 +15,7 @@ Result<std::string> ServedPage::open(const ServeAddress& address) {
   PageServerOptions options;
   options.address = address;
   if (!address.is_loopback()) options.token = new_access_token();
+  scene_.set_state(state_members(waiting_moment({})));  // until there is more to be shown
   Result<std::unique_ptr<PageServer>> server = PageServer::start(options, scene_);
   if (!server) return Error{server.error()};
   server_ = std::move(*server);
