@@ -85,8 +85,7 @@ TEST(ServeCommand, APictureOrSeveralProgramsHaveNoPage) {
   call.arguments = {"run", part, other, "--serve=0"};
   KerfResult result = run_kerf(call);
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("--serve: one page, and there are several programs"),
-            std::string::npos)
+  EXPECT_NE(result.err.find("--serve: one page, and there are several programs"), std::string::npos)
       << result.err;
   call.arguments = {"view", part, "--png", folder.file("part.png"), "--serve=0"};
   result = run_kerf(call);

@@ -350,7 +350,8 @@ TEST(ShopState, SaysWhatIsKnownInTheReadersUnit) {
   status.place.tool = 3;
   status.place.spindle_rpm = std::nan("");
   const Json mm = Json::parse(
-      "{" + state_members(moment_of(status, "flat 8", LengthUnit::kMm), {{12, "G1 <b>\xff"}}) + "}");
+      "{" + state_members(moment_of(status, "flat 8", LengthUnit::kMm), {{12, "G1 <b>\xff"}}) +
+      "}");
   EXPECT_EQ(mm["state"], "live");
   EXPECT_EQ(mm["line"], 12);
   EXPECT_EQ(mm["code"][0][0], 12);
@@ -361,7 +362,8 @@ TEST(ShopState, SaysWhatIsKnownInTheReadersUnit) {
   EXPECT_EQ(mm["is_alarm"], false);
   status.collision_in_s = 1.5;
   status.collision_line = 40;
-  const Json inch = Json::parse("{" + state_members(moment_of(status, "flat 8", LengthUnit::kInch)) + "}");
+  const Json inch =
+      Json::parse("{" + state_members(moment_of(status, "flat 8", LengthUnit::kInch)) + "}");
   EXPECT_EQ(inch["rows"][2][1], "X1.0000 Y0.0000 Z-0.1000");
   EXPECT_EQ(inch["is_alarm"], true);
   EXPECT_EQ(inch["notice"], "collision in 1.5 s, line 40");

@@ -315,7 +315,7 @@ function showNews(news) {
     by("findings").append(made);
   }
   const listed = by("findings").children.length;
-  by("counts").textContent = news.findings_count ? news.findings_count : texts.no_findings;
+  by("counts").textContent = news.findings_count ? news.findings_count : news.state === "ended" ? texts.none : texts.no_findings;
   by("more").hidden = news.findings_count <= listed;
   by("more").textContent = fill(texts.more_findings, news.findings_count - listed);
 }
