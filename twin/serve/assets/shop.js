@@ -232,36 +232,7 @@ const view = makeView(canvas);
 if (!view) { by("loading").hidden = false; by("loading").textContent = texts.no_drawing; }
 
 function listen() {
-  const pointers = new Map();
-  let spread = 0;
-  canvas.addEventListener("pointerdown", (e) => { pointers.set(e.pointerId, [e.clientX, e.clientY]); canvas.setPointerCapture(e.pointerId); });
-  canvas.addEventListener("pointermove", (e) => {
-    const before = pointers.get(e.pointerId);
-    if (!before) return;
-    const dx = e.clientX - before[0], dy = e.clientY - before[1];
-    pointers.set(e.pointerId, [e.clientX, e.clientY]);
-    if (pointers.size === 2) {
-      const [a, b] = [...pointers.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      if (spread > 0) view.zoom(d / spread);
-      spread = d;
-      view.drag(dx / 2, dy / 2, true);
-    } else {
-      view.drag(dx, dy, e.shiftKey || (e.buttons & 6) !== 0);
-    }
-  });
-  const up = (e) => { pointers.delete(e.pointerId); spread = 0; };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.zoom(Math.exp(-e.deltaY * 0.0012)); }, { passive: false });
-  canvas.addEventListener("keydown", (e) => {
-    const keys = { ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12] };
-    if (keys[e.key]) view.drag(...keys[e.key], e.shiftKey);
-    else if (e.key === "+") view.zoom(1.2);
-    else if (e.key === "-") view.zoom(1 / 1.2);
-    else return;
-    e.preventDefault();
-  });
+  listenToHand(canvas, view);
   for (const button of document.querySelectorAll("[data-look]"))
     button.addEventListener("click", () => view.look(button.dataset.look));
   new ResizeObserver(() => view.redraw()).observe(canvas);
