@@ -2,7 +2,9 @@
 // finds the same; whatever it hangs on, changed, is read anew.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <thread>
 
 #include "tests/interp_bridge/program_test_support.h"

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cstdio>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <random>
 #include <set>
 
