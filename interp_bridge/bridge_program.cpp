@@ -27,6 +27,7 @@
 #include "interp_bridge/program_kinds.h"
 #include "interp_bridge/record_cache.h"
 #include "interp_bridge/record_reader.h"
+#include "interp_bridge/record_replay.h"
 #include "interp_bridge/rs274_messages.h"
 #include "interp_bridge/source_text.h"
 #include "interp_bridge/tool_table.h"
@@ -90,41 +91,6 @@ class Contents {
   bool known_ = false;
 };
 
-/// Hands records on, and keeps what it hands on.
-class KeepingReader final : public ByteReader {
- public:
-  KeepingReader(RecordReader& reader, std::optional<RecordStore>& store)
-      : reader_(reader), store_(store) {}
-  std::span<char> room() override { return room_ = reader_.room(); }
-  bool received(std::size_t bytes) override {
-    if (store_) store_->write(room_.first(bytes));
-    return reader_.received(bytes);
-  }
-
- private:
-  RecordReader& reader_;
-  std::optional<RecordStore>& store_;
-  std::span<char> room_;
-};
-
-/// Records that were kept, as if a child sent them.
-ChildEnding replay(CachedRecords& cached, RecordReader& reader, const MotionFeeder& feeder,
-                   const std::stop_token& stop, const std::function<void()>& on_progress) {
-  // As a pipe gives them: what follows begins with the first.
-  constexpr std::size_t kPieceBytes = std::size_t{64} * 1024;
-  for (;;) {
-    if (stop.stop_requested()) return ChildEnding::kStopped;
-    std::span<char> room = reader.room();
-    room = room.first(std::min(room.size(), kPieceBytes));
-    const std::size_t got = cached.read(room);
-    if (got == 0) return ChildEnding::kComplete;
-    if (!reader.received(got)) {
-      return feeder.too_many_commands() ? ChildEnding::kTooMany : ChildEnding::kStopped;
-    }
-    on_progress();
-  }
-}
-
 class BridgeProgram final : public Program {
  public:
   BridgeProgram(const ProgramOptions& options, std::string kerf_interp,
@@ -155,6 +121,7 @@ class BridgeProgram final : public Program {
     Diagnostics& diagnostics;
   };
   Result<Prepared> prepare_child() const;
+  Done place_references(Prepared& prepared) const;
   std::string cache_key(const Prepared& prepared) const;
   bool can_be_kept(const RecordReader& records, ChildEnding ending, const std::string& stderr_text,
                    const ProgramSummary& summary) const;
@@ -199,16 +166,7 @@ bool probes_from_reference(const std::string& path) {
 Result<std::string> BridgeProgram::parameters_for(const std::string& home) const {
   const InterpreterSetup& machine = options_.machine;
   std::string path = home + "/parameters";
-  if (machine.parameter_path.empty() && !machine.work_offset) {
-    if (!probes_from_reference(options_.path)) return home + "/none/parameters";
-    constexpr double kAway_mm = 1;
-    const double away = kAway_mm / mm_of_unit(machine.inch_machine);
-    ParameterFile references;
-    for (const int z : {5163, 5183}) references.values[z] = away;
-    std::ofstream file(path);
-    if (file << references.text() << std::flush) return path;
-    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
-  }
+  if (machine.parameter_path.empty() && !machine.work_offset) return home + "/none/parameters";
   if (!machine.work_offset) {
     std::error_code error;
     fs::copy_file(machine.parameter_path, path, error);
@@ -223,6 +181,26 @@ Result<std::string> BridgeProgram::parameters_for(const std::string& home) const
   std::ofstream file(path);
   if (file << values->text() << std::flush) return path;
   return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
+}
+
+/// Places for G28 and G30 where nobody has said any. It hangs on the program's text alone, which
+/// takes time to look through; records that are kept do not need it.
+Done BridgeProgram::place_references(Prepared& prepared) const {
+  const InterpreterSetup& machine = options_.machine;
+  if (!machine.parameter_path.empty() || machine.work_offset) return std::monostate{};
+  if (!probes_from_reference(options_.path)) return std::monostate{};
+  constexpr double kAway_mm = 1;
+  const double away = kAway_mm / mm_of_unit(machine.inch_machine);
+  ParameterFile references;
+  for (const int z : {5163, 5183}) references.values[z] = away;
+  const std::string path = prepared.child.home + "/parameters";
+  std::ofstream file(path);
+  if (!(file << references.text() << std::flush)) {
+    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
+  }
+  std::vector<std::string>& arguments = prepared.child.arguments;
+  *(std::find(arguments.begin(), arguments.end(), "--parameters") + 1) = path;
+  return std::monostate{};
 }
 
 Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& home) const {
@@ -523,6 +501,9 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   if (!key.empty() && !cached) store = cache.begin(key);
   std::optional<InterpreterProcess> process;
   if (!cached) {
+    if (const Done placed = place_references(*prepared); !placed) {
+      return cannot_begin(placed.error());
+    }
     auto started = InterpreterProcess::start(prepared->child);
     if (!started) return cannot_begin(started.error());
     process.emplace(std::move(*started));
