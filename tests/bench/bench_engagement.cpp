@@ -1,12 +1,14 @@
 // bench_engagement: how near the looks of --engagement come to exact geometry, along a program.
 //
 //   bench_engagement PROGRAM --stock SPEC --tool SHAPE [--cell MM] [--looks N] [--dense MM]
+//   [--brief 1]
 //
 // One tool cuts all moves. N feed moves (default 100), evenly spread, are looked at in their
 // middle, before they are cut, and asked about by brute force (engagement_oracle.h). --dense: what
 // is removed, in cells of that size, too; fails where the two are apart by more than 1e-4.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -27,6 +29,7 @@ struct Wish {
   std::string program, stock, tool;
   double cell_mm = 0.1, dense_mm = 0;
   std::size_t looks = 100;
+  bool is_brief = false;
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -102,6 +105,7 @@ int run(const Wish& wish) {
   EngagementErrors errors;
   std::vector<CutReport> reports;
   std::size_t engaged = 0;
+  double looked_s = 0;
   const double each = static_cast<double>(steps.size()) / static_cast<double>(wish.looks);
   double next = 0.5 * each;
   for (std::size_t n = 0; n < steps.size(); ++n) {
@@ -113,7 +117,10 @@ int run(const Wish& wish) {
       const std::optional<HeightGrid> heights = map->present_heights();
       EngagementScan::Look asked;
       asked.at = 0.5, asked.owners = map.get(), asked.ways = &ways;
+      asked.is_brief = wish.is_brief;
+      const auto begun = std::chrono::steady_clock::now();
       const EngagementLook look = scan.look_ahead(*heights, cutter, step.move, asked);
+      looked_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
       const EngagementTruth truth = oracle.look(cutter, step.move, 0.5, 180, 40);
       const double before = errors.most;
       errors.add(look, truth);
@@ -130,8 +137,8 @@ int run(const Wish& wish) {
     ways.add(step.move);
     oracle.add(cutter, step.move);
   }
-  fmt::print("{}, {}, cells of {} mm: {} engaged; {}\n", wish.program, wish.tool, wish.cell_mm,
-             engaged, errors.text());
+  fmt::print("{}, {}, cells of {} mm: {} engaged; {}; {:.1f} us a look\n", wish.program, wish.tool,
+             wish.cell_mm, engaged, errors.text(), 1e6 * looked_s / errors.looks);
   if (wish.dense_mm <= 0) return 0;
   return compare_volumes(wish, cutter, steps, blank_mm3 - map->remaining_mm3());
 }
@@ -149,6 +156,7 @@ int main(int argc, char** argv) {
     if (option == "--tool") wish.tool = value;
     if (option == "--cell") wish.cell_mm = std::atof(value.c_str());
     if (option == "--dense") wish.dense_mm = std::atof(value.c_str());
+    if (option == "--brief") wish.is_brief = value != "0";
     if (option == "--looks") wish.looks = static_cast<std::size_t>(std::atoi(value.c_str()));
   }
   if (!kerf::parse_blank(wish.stock) || !kerf::parse_shape(wish.tool))

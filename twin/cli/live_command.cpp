@@ -276,7 +276,8 @@ int watch(LiveRequest& request, std::unique_ptr<PositionSource> source, std::sto
   }
   std::optional<LiveBroadcast> broadcast;
   if (around.served != nullptr) {
-    observer = &broadcast.emplace(broadcast_options(request, *session), *observer, *around.served);
+    observer = &broadcast.emplace(broadcast_options(request, *session), shown_unit(),
+                                  session->tool_sources(), *observer, *around.served);
   }
   if (pins) pins->tell_to(observer, view ? &*view : nullptr);
   session->set_observer(observer);
@@ -337,7 +338,7 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
     update.moment = std::move(moment);
     around.window->mailbox().publish(std::move(update));
     if (around.served != nullptr) {
-      around.served->set_state(waiting_members(line));
+      around.served->set_state(state_members(waiting_moment(line)));
       around.served->publish();
     }
   };
@@ -504,17 +505,7 @@ int watch_as_asked(const Arguments& arguments, LiveRequest& request, Diagnostics
   std::optional<ServedPage> page;
   if (request.serve) {
     page.emplace();
-    Result<std::string> link = page->open(*request.serve);
-    if (!link) {
-      Diagnostic d = fault(fmt::format("--serve: {}", link.error()));
-      d.hint =
-          tr("it must be an address of this computer and a port that nobody has; port 0 is any");
-      print_diagnostics({d}, false);
-      return kExitFailure;
-    }
-    // Whoever is to look on needs it, --quiet or not.
-    print_text(stderr, trf("kerf: the page is at {}\n", *link));
-    flush_console();
+    if (!open_and_tell(*page, *request.serve)) return kExitFailure;
   }
   return watch_in_window(arguments, request, std::move(source), stop,
                          page ? &page->scene() : nullptr);
@@ -553,7 +544,7 @@ int live_command(const Arguments& arguments) {
 }
 
 ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueue& commands,
-                  std::stop_source& stop, std::function<void()> on_start) {
+                  std::stop_source& stop, ServedScene* served, std::function<void()> on_start) {
   ShownLog shown;
   LiveRequest request = understand_live(arguments, shown.diagnostics);
   check_shapes(request.config.machine.drawn, shown.diagnostics);
@@ -565,7 +556,7 @@ ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueu
   window.serve([&] {
     if (!std::exchange(has_started, true)) on_start();
   });
-  watch_rounds(request, std::move(source), stop, window, nullptr);
+  watch_rounds(request, std::move(source), stop, window, served);
   shown.opened = window.opened();
   if (!has_started) {
     shown.diagnostics.push_back(fault(trf("{} cannot be replayed", arguments.options.text("LOG"))));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "twin/cli/live_options.h"
+#include "twin/serve/served_scene.h"
 #include "viewer/scene_mailbox.h"
 #include "viewer/viewer_command.h"
 
@@ -22,8 +23,9 @@ struct ShownLog {
 };
 
 /// Replays a log in a window that is there already, until it is closed or something else is opened.
-/// `on_start` is called before the window is told anything.
+/// `on_start` is called before the window is told anything. `served`: pages show it, too; may be
+/// null.
 ShownLog show_log(const Arguments& arguments, SceneMailbox& mailbox, CommandQueue& commands,
-                  std::stop_source& stop, std::function<void()> on_start);
+                  std::stop_source& stop, ServedScene* served, std::function<void()> on_start);
 
 }  // namespace kerf

@@ -16,6 +16,7 @@
 #include "twin/cli/cutting_options.h"
 #include "twin/cli/draw_option.h"
 #include "twin/cli/run_options.h"
+#include "twin/cli/serve_option.h"
 #include "twin/config/make_source.h"
 
 namespace kerf {
@@ -158,16 +159,6 @@ void take_work(WorkRequest work, LiveOptions& options) {
   options.cutting.checks.collisions = std::move(work.collisions);
 }
 
-void understand_serve(OptionReader& reader, LiveRequest& request) {
-  const std::string text = reader.text("--serve");
-  if (text.empty()) return;
-  request.serve = read_serve_address(text);
-  if (request.serve) return;
-  reader.fault("--serve", trf("'{}' is no address of this computer", text),
-               tr("192.168.1.5:8734, [fd00::5]:8734, 192.168.1.5, 8734; 0.0.0.0 is all addresses "
-                  "that it has; --serve alone is for this computer"));
-}
-
 /// How fast and how long; and all that is written or shown.
 void understand_outlets(OptionReader& reader, LiveRequest& request) {
   LiveOptions& options = request.options;
@@ -182,7 +173,7 @@ void understand_outlets(OptionReader& reader, LiveRequest& request) {
   if (reader.command() == kReplay) request.finding_png = reader.text("--finding-png");
   request.record = reader.text("--record");
   request.events = reader.text("--events");
-  understand_serve(reader, request);
+  request.serve = understand_serve(reader);
   request.outputs = understand_outputs(reader);
   request.compare = understand_compare(reader, options.tools);
   check_outline_wishes(options.blank, request.outputs, reader);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include "base/atomic_file.h"
 #include "base/exit_code.h"
 #include "base/translate.h"
+#include "base/wait_for_stop.h"
 #include "interp_bridge/private_folder.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
@@ -26,6 +28,7 @@
 #include "twin/cli/option_reader.h"
 #include "twin/cli/page_output.h"
 #include "twin/cli/progress_bar.h"
+#include "twin/cli/served_page.h"
 #include "twin/cli/stdin_program.h"
 #include "twin/cli/stop_deadline.h"
 #include "twin/cli/stop_signals.h"
@@ -36,6 +39,7 @@
 #include "twin/process/run_curve.h"
 #include "twin/program/session_parts.h"
 #include "twin/report/motion_table.h"
+#include "twin/serve/run_broadcast.h"
 
 namespace kerf {
 namespace {
@@ -192,6 +196,31 @@ std::optional<EntryPlan> plan_entry_of(const RunRequest& request,
   return plan_entry(request.session, request.entry, folder->path(), stop, diagnostics);
 }
 
+/// The exit code: `code`, or that of a list that cannot be written.
+int list_findings(const OutputPaths& outputs, std::span<const ListedProgram> listed, int code) {
+  Diagnostics diagnostics;
+  write_finding_lists(outputs, listed, diagnostics);
+  print(diagnostics);
+  return has_error(diagnostics) ? kExitFailure : code;
+}
+
+/// What came of it may be looked at until somebody stops.
+void keep_page(const RunRequest& request, const std::stop_token& stop) {
+  if (!request.quiet) print_text(stderr, trf("kerf: the page stays until Ctrl-C\n"));
+  flush_console();
+  while (!wait_for_stop(stop, std::chrono::hours(1))) {
+  }
+}
+
+RunBroadcastOptions broadcast_options(const RunRequest& request) {
+  RunBroadcastOptions options;
+  const std::string& path = request.session.program.path;
+  options.has_file = path != "-";
+  options.title = std::filesystem::path(path).filename().string();
+  options.unit = request.units;
+  return options;
+}
+
 }  // namespace
 
 RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunListener& finished) {
@@ -219,6 +248,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
         tell_interrupted(request, none, 0, tr("before the end of the program"));
       },
       kRunPatience);
+  const RunBroadcastOptions of_page = broadcast_options(request);
   kept.take(request.session.program.path, listings_of(request.session), stop.get_token(),
             diagnostics);
   std::optional<PrivateFolder> between;  // of the workpiece as the entry finds it
@@ -247,6 +277,14 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     session->record_by(curve.emplace());
     if (request.engagement) session->hear_loads(loads.emplace());
   }
+  std::optional<ServedPage> page;
+  std::optional<RunBroadcast> broadcast;
+  if (session && request.serve) {
+    if (!open_and_tell(page.emplace(), *request.serve)) {
+      return {kExitFailure, stop.stop_requested(), listed_fault(request, diagnostics)};
+    }
+    session->set_observer(&broadcast.emplace(of_page, *session, page->scene()));
+  }
   print(diagnostics);
   if (!session) {
     return {exit_code(outcome, Report{}, diagnostics), stop.stop_requested(),
@@ -265,7 +303,7 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
   rename_stdin(kept, session->report(), diagnostics);
   if (request.engagement && session->stock()) doubt_engagement(*session->stock(), diagnostics);
   Compared compared;
-  PageFacts page;
+  PageFacts facts;
   if (!has_error(diagnostics) && design) {
     compared = compare_finished(request.compare, *design, session->stock(),
                                 {labels_in(*session), session->kept_moves()}, session->report(),
@@ -278,17 +316,17 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
           tell_interrupted(request, report, dealt_with, tr("before all its files were written"));
         },
         kWritingPatience);
-    page = {labels_in(*session),
-            curve ? &*curve : nullptr,
-            request.is_of_job
-                ? std::string()
-                : command_line(with_guesses(request.written,
-                                            rows_in(session->report().guesses, request.units))),
-            request.units,
-            compared.of_workpiece().get(),
-            loads ? &*loads : nullptr,
-            request.session.cutting};
-    write_pages(request.outputs, session->report(), session->stock(), page, diagnostics);
+    facts = {labels_in(*session),
+             curve ? &*curve : nullptr,
+             request.is_of_job
+                 ? std::string()
+                 : command_line(with_guesses(request.written,
+                                             rows_in(session->report().guesses, request.units))),
+             request.units,
+             compared.of_workpiece().get(),
+             loads ? &*loads : nullptr,
+             request.session.cutting};
+    write_pages(request.outputs, session->report(), session->stock(), facts, diagnostics);
     dealt_with |= request.outputs.bit_of(request.outputs.html);
     dealt_with |= request.outputs.bit_of(request.outputs.pdf);
     if (table) {
@@ -308,11 +346,19 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     print_results(request, session->report());
   }
   const int code = exit_code(outcome, session->report(), diagnostics);
-  if (finished && !has_error(diagnostics)) finished({*session, outcome, code, page}, diagnostics);
+  if (finished && !has_error(diagnostics)) finished({*session, outcome, code, facts}, diagnostics);
   flush_console();
   print(diagnostics);
   ListedProgram listed = listed_program(session->report());
   listed.faults = diagnostics;
+  if (broadcast) broadcast->end();
+  const bool is_kept = broadcast && !request.view && session->stock() && !stop.stop_requested();
+  if (is_kept) {
+    deadline.reset();  // nothing is left that could take its time
+    const int whole_code = list_findings(request.outputs, {&listed, 1}, code);
+    keep_page(request, stop.get_token());
+    return {whole_code, false, std::move(listed), true};
+  }
   if (!request.view || stop.stop_requested() || !session->stock()) {
     return {code, stop.stop_requested(), std::move(listed)};
   }
@@ -339,17 +385,12 @@ void refuse_shared_outputs(const RunRequest& request, std::size_t programs,
               trf("{}: one folder, and there are {} programs", request.finding_png, programs),
               tr("run them one by one, each with a folder of its own"), diagnostics);
   }
+  if (request.serve) {
+    add_fault("--serve", tr("one page, and there are several programs"), {}, diagnostics);
+  }
   if (request.view) {
     add_fault("--view", tr("one window, and there are several programs"), {}, diagnostics);
   }
-}
-
-/// The exit code: `code`, or that of a list that cannot be written.
-int list_findings(const OutputPaths& outputs, const std::vector<ListedProgram>& listed, int code) {
-  Diagnostics diagnostics;
-  write_finding_lists(outputs, listed, diagnostics);
-  print(diagnostics);
-  return has_error(diagnostics) ? kExitFailure : code;
 }
 
 }  // namespace
@@ -372,6 +413,7 @@ int run_command(const Arguments& arguments) {
   std::vector<ListedProgram> listed;
   if (programs.size() <= 1) {
     RunVerdict end = run_one(one, std::move(request));
+    if (end.is_listed) return end.code;
     listed.push_back(std::move(end.listed));
     return list_findings(outputs, listed, end.code);
   }

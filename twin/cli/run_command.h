@@ -14,7 +14,8 @@ namespace kerf {
 struct RunVerdict {
   int code = kExitGood;
   bool interrupted = false;
-  ListedProgram listed;  ///< for --junit and --sarif
+  ListedProgram listed;    ///< for --junit and --sarif
+  bool is_listed = false;  ///< those are written already
 };
 
 /// A run that has a report, all of it done and written.

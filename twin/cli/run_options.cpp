@@ -11,6 +11,7 @@
 #include "twin/cli/draw_option.h"
 #include "twin/cli/live_place.h"
 #include "twin/cli/option_reader.h"
+#include "twin/cli/serve_option.h"
 
 namespace kerf {
 namespace {
@@ -147,6 +148,7 @@ RunRequest understand_run(const Arguments& arguments, Diagnostics& diagnostics) 
   request.session.cutting = understand_cutting(reader);
   request.engagement = reader.is_yes("--engagement") || !request.outputs.engagement_png.empty() ||
                        request.session.cutting.is_wanted() || has_tool_limits(request.session);
+  request.serve = understand_serve(reader);
   request.view = reader.is_yes("--view");
   if (request.view && request.compare.is_fitted) {
     reader.fault("--compare-fit",

@@ -12,6 +12,7 @@
 #include "twin/cli/work_options.h"
 #include "twin/config/live_config.h"
 #include "twin/machines/machine_choice.h"
+#include "twin/serve/serve_address.h"
 #include "twin/session/entry_check.h"
 #include "twin/session/session.h"
 #include "viewer/scene.h"
@@ -23,14 +24,15 @@ struct RunRequest {
   SessionOptions session;
   OutputPaths outputs;
   double mesh_tolerance_mm = 0;
-  std::string finding_png;       ///< a folder; empty: no pictures of findings
-  bool view = false;             ///< in a window, when it is done
-  std::optional<DrawMode> draw;  ///< in that window; none: as it remembers it
-  MachineChoice machine;         ///< drawn there, around the workpiece
-  std::string ini;               ///< of that machine; empty: none is given
-  EntryWish entry;               ///< a start in the middle
-  CompareRequest compare;        ///< the finished part with its design
-  bool engagement = false;       ///< how tools are engaged is measured
+  std::string finding_png;            ///< a folder; empty: no pictures of findings
+  bool view = false;                  ///< in a window, when it is done
+  std::optional<DrawMode> draw;       ///< in that window; none: as it remembers it
+  MachineChoice machine;              ///< drawn there, around the workpiece
+  std::string ini;                    ///< of that machine; empty: none is given
+  EntryWish entry;                    ///< a start in the middle
+  CompareRequest compare;             ///< the finished part with its design
+  bool engagement = false;            ///< how tools are engaged is measured
+  std::optional<ServeAddress> serve;  ///< a page for who looks on
   bool quiet = false;
   bool verbose = false;
   bool keeps_moves = false;            ///< for a comparison that comes after another setup

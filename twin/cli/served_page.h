@@ -25,6 +25,10 @@ class ServedPage {
   std::unique_ptr<PageServer> server_;
 };
 
-LiveBroadcastOptions broadcast_options(const LiveRequest& request, const LiveSession& session);
+/// Opens it and prints the link, --quiet or not: whoever is to look on needs it. False: the address
+/// cannot be had, which is told.
+bool open_and_tell(ServedPage& page, const ServeAddress& address);
+
+ShopBroadcastOptions broadcast_options(const LiveRequest& request, const LiveSession& session);
 
 }  // namespace kerf

@@ -23,6 +23,7 @@
 #include "twin/cli/live_command.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/progress_bar.h"
+#include "twin/cli/served_page.h"
 #include "twin/cli/stop_deadline.h"
 #include "twin/cli/stop_signals.h"
 #include "twin/cli/torch_options.h"
@@ -62,13 +63,17 @@ int in_window(std::optional<Arguments> arguments, const ViewRequest& request,
   options.color_by = request.color_by;
   options.color_on = request.color_on;
   if (request.run.units != LengthUnit::kMm) options.units = request.run.units;
+  std::optional<ServedPage> page;
+  if (request.run.serve && !open_and_tell(page.emplace(), *request.run.serve)) return kExitFailure;
+  ServedScene* const served = page ? &page->scene() : nullptr;
   const auto replay = [&](const Arguments& log, std::function<void()> on_start) {
     Arguments live = replay_arguments(log);
     live.options.set_flag("--quiet");
     live.words = {"kerf", "view", live.options.text("LOG")};
-    return show_log(live, mailbox, commands, stop, std::move(on_start));
+    return show_log(live, mailbox, commands, stop, served, std::move(on_start));
   };
-  ViewWork work(std::move(arguments), request, mailbox, commands, stop, replay, std::move(setups));
+  ViewWork work(std::move(arguments), request, mailbox, commands, stop, replay, std::move(setups),
+                served);
   const StopDeadline deadline(stop.get_token(), kExitGood);
   const Result<int> code =
       work_beside_window(options, mailbox, commands, stop, [&work] { return work.run(); });
@@ -178,7 +183,7 @@ Arguments again_in_window(Arguments arguments) {
   WrittenOptions& options = arguments.options;
   for (const auto& [output, path] : OutputPaths{}.named()) options.clear(output);
   for (const char* const option :
-       {"--mesh-tolerance", "--view", "--verbose", "--finding-png", "--rest"}) {
+       {"--mesh-tolerance", "--serve", "--view", "--verbose", "--finding-png", "--rest"}) {
     options.clear(option);
   }
   options.set_flag("--quiet");
@@ -190,7 +195,8 @@ Arguments again_in_window(Arguments arguments) {
 int show_program(const Arguments& arguments, const RunRequest& run, std::stop_source& stop) {
   ViewRequest request;
   request.run = run;
-  request.run.quiet = true;  // the dry run has said it
+  request.run.quiet = true;   // the dry run has said it
+  request.run.serve.reset();  // and serves it
   request.at_end = true;
   request.window_mode = run.draw;
   if (arguments.options.text("PROGRAM") != run.session.program.path) {  // standard input: gone

@@ -13,6 +13,7 @@
 #include "twin/cli/draw_option.h"
 #include "twin/cli/option_reader.h"
 #include "twin/cli/outputs.h"
+#include "twin/cli/serve_option.h"
 
 namespace kerf {
 namespace {
@@ -154,6 +155,7 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
                            has_tool_limits(request.run.session);
   request.written = arguments;
   request.speed = read_speed(reader);
+  request.run.serve = understand_serve(reader);
   request.at_line = static_cast<std::uint32_t>(reader.whole_number("--at-line"));
   const double keyframes_mb = reader.number("--keyframes");
   request.player.keyframe_bytes = static_cast<std::size_t>(keyframes_mb * 1048576.0);
@@ -165,6 +167,8 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
     d.hint = tr("kerf view --help lists what there is");
     diagnostics.push_back(std::move(d));
   }
+  if (request.run.serve && !request.wants_window())
+    reader.fault("--serve", tr("is for the window; --png and --frames end when they are written"));
   read_comparison(reader, request);
   read_mode(reader, request);
   read_colors(reader, request);

@@ -41,7 +41,7 @@ std::string first_line(const Diagnostic& diagnostic) {
 
 ViewWork::ViewWork(std::optional<Arguments> arguments, ViewRequest request, SceneMailbox& mailbox,
                    CommandQueue& commands, std::stop_source& stop, Replay replay,
-                   std::unique_ptr<ViewSetups> setups)
+                   std::unique_ptr<ViewSetups> setups, ServedScene* served)
     : arguments_(std::move(arguments)),
       request_(std::move(request)),
       mailbox_(mailbox),
@@ -49,6 +49,7 @@ ViewWork::ViewWork(std::optional<Arguments> arguments, ViewRequest request, Scen
       stop_(stop),
       replay_(std::move(replay)),
       setups_(std::move(setups)),
+      served_(served),
       speed_(request_.speed),
       entries_(mailbox) {}
 
@@ -143,7 +144,7 @@ std::optional<ViewerCommand> ViewWork::replay_logs(ViewerCommand asked) {
       if (is_free) log.options.add("--tool", fmt::format("{}={}", tool.number, tool.in_use));
     }
     const ShownLog shown = replay_(log, [this] {
-      view_.reset();
+      drop_view();
       has_machine_ = true;  // maybe; what comes next takes it away
       job_ = ViewedJob{};
       arguments_->options.clear("PROGRAM");
@@ -259,9 +260,12 @@ void ViewWork::replace_view(std::unique_ptr<LoadedProgram> loaded) {
   }
   has_machine_ = shown.machine != nullptr;
   entries_.forget();
-  view_.reset();  // its keyframes first
+  drop_view();  // its keyframes first
+  PlayedForPage played = for_page(shown);
   view_ = std::make_unique<PlayerView>(std::move(loaded->player), request_.player, std::move(shown),
                                        mailbox_, commands_);
+  if (served_ != nullptr)
+    broadcast_.emplace(view_->player(), std::move(played), request_.run.units, *served_);
   view_->answer_entries_by([this](int line) {
     if (!can_enter()) return;
     entries_.ask(line, arguments_->options.text("PROGRAM"), arguments_->options,
@@ -372,6 +376,18 @@ void ViewWork::publish_job() {
   mailbox_.publish(std::move(update));
 }
 
+void ViewWork::drop_view() {
+  broadcast_.reset();
+  view_.reset();
+}
+
+/// While there is a program they show that.
+void ViewWork::tell_waiting_pages(const std::string& notice) {
+  if (served_ == nullptr || view_) return;
+  served_->set_state(state_members(waiting_moment(notice)));
+  served_->publish();
+}
+
 /// In the status line, until something moves.
 void ViewWork::tell(const std::string& notice) {
   auto moment = std::make_shared<Moment>(view_ ? *view_->moment() : Moment{});
@@ -379,10 +395,12 @@ void ViewWork::tell(const std::string& notice) {
   SceneUpdate update;
   update.moment = std::move(moment);
   mailbox_.publish(std::move(update));
+  tell_waiting_pages(notice);
 }
 
 /// Nothing if files have changed, or if it is over.
 std::optional<ViewerCommand> ViewWork::wait_without_program() {
+  if (job_.faults.empty()) tell_waiting_pages(tr("no program is open"));
   while (!stop_.stop_requested()) {
     for (ViewerCommand& command : commands_.wait_for(kWorkPatience)) {
       if (std::holds_alternative<OpenCommand>(command) ||

@@ -15,6 +15,7 @@
 #include "twin/cli/view_load.h"
 #include "twin/cli/view_setups.h"
 #include "twin/scene/player_view.h"
+#include "twin/serve/player_broadcast.h"
 #include "viewer/scene_mailbox.h"
 #include "viewer/viewer_command.h"
 
@@ -29,10 +30,11 @@ class ViewWork {
   /// and nothing else. The others must outlive it.
   /// `replay` shows the log that is the arguments' program, where logs can be shown. `setups`: of
   /// the part whose setup is shown; when that has been played to its end, the next one plays on.
+  /// `served`: pages show what the window does; null: none do.
   using Replay = std::function<ShownLog(const Arguments&, std::function<void()> on_start)>;
   ViewWork(std::optional<Arguments> arguments, ViewRequest request, SceneMailbox& mailbox,
            CommandQueue& commands, std::stop_source& stop, Replay replay = {},
-           std::unique_ptr<ViewSetups> setups = nullptr);
+           std::unique_ptr<ViewSetups> setups = nullptr, ServedScene* served = nullptr);
 
   /// Until the window is closed; what the program is to end with.
   int run();
@@ -71,6 +73,8 @@ class ViewWork {
   void publish_job();
   bool can_enter() const;
   void tell(const std::string& notice);
+  void tell_waiting_pages(const std::string& notice);
+  void drop_view();
   void announce(const LoadProgress& progress);
   void watch_commands();
   void keep(ViewerCommand command);
@@ -85,10 +89,12 @@ class ViewWork {
   std::string partial_reason_;          ///< of what is shown; empty: it was read to its end
   bool is_setup_shown_ = false;         ///< by view_, and not what was there before the job
   std::optional<std::size_t> told_changed_;
-  std::unique_ptr<PlayerView> view_;  ///< null: there is no program
-  bool has_machine_ = false;          ///< in the window
-  bool is_same_program_ = false;      ///< as the one that is shown
-  std::optional<double> speed_;       ///< to play at, at once
+  ServedScene* served_ = nullptr;             ///< null: no page is served
+  std::unique_ptr<PlayerView> view_;          ///< null: there is no program
+  std::optional<PlayerBroadcast> broadcast_;  ///< of view_'s player
+  bool has_machine_ = false;                  ///< in the window
+  bool is_same_program_ = false;              ///< as the one that is shown
+  std::optional<double> speed_;               ///< to play at, at once
   ViewedJob job_;
   std::string shown_blank_;  ///< its box, as --stock has it; empty: there is none
   FileWatch watch_;

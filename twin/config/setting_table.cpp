@@ -50,11 +50,11 @@ std::span<const Setting> setting_table() {
 }
 
 bool is_passed_on(const Setting& setting) {
-  constexpr std::array<std::string_view, 21> kOfOneRun{
-      "--json",    "--junit",    "--sarif",         "--csv",  "--png",  "--finding-png",
-      "--stl",     "--ply",      "--state",         "--dxf",  "--svg",  "--mesh-tolerance",
-      "--html",    "--pdf",      "--compare-png",   "--view", "--draw", "--quiet",
-      "--verbose", "--rest-png", "--engagement-png"};
+  constexpr std::array<std::string_view, 22> kOfOneRun{
+      "--json",    "--junit",    "--sarif",          "--csv",  "--png",  "--finding-png",
+      "--stl",     "--ply",      "--state",          "--dxf",  "--svg",  "--mesh-tolerance",
+      "--html",    "--pdf",      "--compare-png",    "--view", "--draw", "--quiet",
+      "--verbose", "--rest-png", "--engagement-png", "--serve"};
   return (setting.commands & kRun) != 0 && !setting.option.empty() && !setting.is_positional() &&
          std::find(kOfOneRun.begin(), kOfOneRun.end(), setting.option) == kOfOneRun.end();
 }

@@ -20,7 +20,7 @@ constexpr std::array kOutputSettings{
             .help = tr_noop("states, findings and warnings as JSON lines"),
             .value_name = "FILE"},
     Setting{.option = "--serve",
-            .commands = kBesideMachine,
+            .commands = kRun | kView | kBesideMachine,
             .type = T::kText,
             .help = tr_noop("a page for tablets and desks that look on: an address of this "
                             "computer, its port, or both; alone: 127.0.0.1:8734, for this "

@@ -23,14 +23,19 @@ void put_length(std::string& out, std::size_t length) {
 ServedScene::ServedScene() : epoch_(first_epoch()) {}
 
 void ServedScene::begin_anew() {
+  begin_part_anew();
+  const std::lock_guard lock(mutex_);
+  findings_.clear();
+  finding_count_ = 0;
+}
+
+void ServedScene::begin_part_anew() {
   const std::lock_guard lock(mutex_);
   ++epoch_;
   ++version_;
   tiles_.clear();
   order_.clear();
   is_whole_ = false;
-  findings_.clear();
-  finding_count_ = 0;
 }
 
 void ServedScene::set_state(std::string members) {
@@ -51,6 +56,18 @@ void ServedScene::add_finding(std::string json) {
   ++version_;
   ++finding_count_;
   if (findings_.size() < kMostFindings) findings_.push_back(std::move(json));
+}
+
+void ServedScene::set_findings(std::vector<std::string> all, std::uint64_t total) {
+  if (all.size() > kMostFindings) all.resize(kMostFindings);
+  const std::lock_guard lock(mutex_);
+  const bool goes_on =
+      findings_.size() <= all.size() && std::equal(findings_.begin(), findings_.end(), all.begin());
+  if (goes_on && findings_.size() == all.size() && finding_count_ == total) return;
+  ++version_;
+  if (!goes_on) findings_anew_ = version_;
+  findings_ = std::move(all);
+  finding_count_ = total;
 }
 
 void ServedScene::set_patch(std::uint32_t tile, std::string bytes) {
@@ -86,11 +103,15 @@ bool ServedScene::has_news(const SeenByPage& seen) const {
 }
 
 std::string ServedScene::json_for(const SeenByPage& seen, std::uint64_t mesh, bool is_whole) const {
+  const std::size_t from = seen.version < findings_anew_
+                               ? std::size_t{0}
+                               : std::min<std::size_t>(seen.findings, findings_.size());
   std::string json = fmt::format(
-      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings":[)",
-      epoch_, version_, mesh, is_whole, finding_count_);
-  for (std::size_t i = seen.findings; i < findings_.size(); ++i) {
-    if (i > seen.findings) json += ',';
+      R"({{"epoch":{},"version":{},"mesh":{},"is_whole":{},"findings_count":{},"findings_from":{},)"
+      R"("findings":[)",
+      epoch_, version_, mesh, is_whole, finding_count_, from);
+  for (std::size_t i = from; i < findings_.size(); ++i) {
+    if (i > from) json += ',';
     json += findings_[i];
   }
   json += ']';

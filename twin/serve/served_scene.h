@@ -44,12 +44,17 @@ class ServedScene {
 
   /// Another workpiece, or another session: pages begin anew.
   void begin_anew();
+  /// Another workpiece of the same session: its findings stay.
+  void begin_part_anew();
   /// JSON members that every answer has, as "\"state\":\"live\",..": without braces.
   void set_state(std::string members);
   /// Members that only who has not had them gets: what stays through an epoch.
   void set_setup(std::string members);
   /// A finding as a JSON object.
   void add_finding(std::string json);
+  /// All of them instead, of which `total` are more: where they begin as those before, pages get
+  /// what is new alone, else all anew.
+  void set_findings(std::vector<std::string> all, std::uint64_t total);
   /// A packed() patch; compressed here, in the caller's thread.
   void set_patch(std::uint32_t tile, std::string bytes);
   /// Whether all tiles of the workpiece have been set; begin_anew() says no.
@@ -61,9 +66,9 @@ class ServedScene {
   bool has_news(const SeenByPage& seen) const;
   /// "KRF1", u32 length of the JSON, the JSON, 0 to 3 spaces of it so that the length is a multiple
   /// of 4; then patches (packed_patch.h). The JSON: epoch, version, mesh, findings_count, is_whole
-  /// (of the patches: no more are missing), findings (those that the page has not), the setup if it
-  /// is new to it, and the state.
-  /// `as_gzip`: compressed (Content-Encoding: gzip).
+  /// (of the patches: no more are missing), findings (those that the page has not) and
+  /// findings_from (what it has of them from here on counts no more), the setup if it is new to it,
+  /// and the state. `as_gzip`: compressed (Content-Encoding: gzip).
   std::string answer(const SeenByPage& seen, bool as_gzip);
 
   /// A page has asked within the last kWatched: else nobody need make patches.
@@ -82,6 +87,7 @@ class ServedScene {
   std::uint64_t setup_version_ = 0;
   std::vector<std::string> findings_;
   std::uint64_t finding_count_ = 0;
+  std::uint64_t findings_anew_ = 0;  ///< the version since which they begin as they do
   struct Tile {
     std::uint64_t number = 0;
     std::string bytes;

@@ -23,6 +23,7 @@ std::string texts_json() {
   out["no_answer"] = tr("No answer from kerf: what is shown is old");
   out["findings"] = tr("Findings");
   out["no_findings"] = tr("none yet");
+  out["none"] = tr("none");
   out["more_findings"] = tr("and {} more");
   out["token"] = tr("Token");
   out["token_wanted"] = tr("kerf has printed a link with a token where it was started");

@@ -38,59 +38,6 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-class Rows {
- public:
-  explicit Rows(LengthUnit unit) : unit_(unit) {}
-  void add(const std::string& name, const std::string& value) {
-    rows_.push_back({name, in_unit(value, unit_)});
-  }
-  void add_as_it_is(const std::string& name, const std::string& value) {
-    rows_.push_back({name, value});
-  }
-  ShopJson take() { return std::move(rows_); }
-
- private:
-  LengthUnit unit_;
-  ShopJson rows_ = ShopJson::array();
-};
-
-/// As many digits whatever the place: it changes ten times a second.
-std::string place_text(const Vec3& mm, LengthUnit unit) {
-  if (unit == LengthUnit::kMm) return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", mm.x, mm.y, mm.z);
-  const Vec3 inch = mm / kMmPerInch;
-  return fmt::format("X{:.4f} Y{:.4f} Z{:.4f}", inch.x, inch.y, inch.z);
-}
-
-ShopJson rows_of(const LiveStatus& status, const std::string& tool_name, LengthUnit unit) {
-  const ToolState& place = status.place;
-  Rows rows(unit);
-  if (place.followed) {
-    rows.add(tr("Program"), fmt::format("{}:{}", file_name(status.file), place.source.line));
-  }
-  if (place.followed && status.remaining_s >= 0) {
-    rows.add(tr("Time left"), time_left_text(status.remaining_s));
-  }
-  if (place.known) {
-    rows.add_as_it_is(tr("Position"), place_text(place.tip_mm, unit));
-  }
-  if (place.tool >= 0) rows.add(tr("Tool"), fmt::format("T{} {}", place.tool, tool_name));
-  if (status.feed_mm_per_min) {
-    rows.add(tr("Feed"), fmt::format("{:.0f} mm/min", *status.feed_mm_per_min));
-  }
-  if (std::isfinite(place.spindle_rpm)) {
-    rows.add(tr("Spindle"), fmt::format("{:.0f} rpm", place.spindle_rpm));
-  }
-  if (status.load) rows.add(tr("Load"), text_of(*status.load));
-  if (status.run > 1) {
-    rows.add(tr("Run"), trf("{}, part {}", status.run, status.part));
-  }
-  rows.add(tr("Removed"), fmt::format("{:.2f} cm3", status.removed_mm3 / 1000));
-  if (status.dropped > 0 || status.source.lost > 0) {
-    rows.add(tr("Lost positions"), std::to_string(status.dropped + status.source.lost));
-  }
-  return rows.take();
-}
-
 ShopJson profile_json(const std::vector<ProfilePoint>& profile) {
   ShopJson out = ShopJson::array();
   for (const ProfilePoint& point : profile) {
@@ -122,38 +69,75 @@ ShopJson tool_json(const ToolShape& shape) {
 
 }  // namespace
 
-std::string state_members(const LiveStatus& status, const std::string& tool_name,
-                          const std::vector<ShownLine>& code, LengthUnit unit) {
-  const ToolState& place = status.place;
-  ShopJson out;
-  out["state"] = to_string(status.state);
-  out["state_text"] = tr(to_string(status.state));
-  out["age_s"] = rounded(status.age_s);
-  out["told_ms"] = now_ms();
-  out["rows"] = rows_of(status, tool_name, unit);
-  out["notice"] = in_unit(notice_of(status), unit);
-  out["is_alarm"] = status.collision_in_s >= 0;
-  out["line"] = place.followed ? place.source.line : 0;
-  out["code"] = ShopJson::array();
-  for (const ShownLine& line : code) out["code"].push_back({line.number, line.text});
-  out["tip_mm"] = place.known ? vector_json(place.tip_mm) : ShopJson(nullptr);
-  out["axis"] = vector_json(place.spindle);
-  return members_of(out);
+std::string place_text(const Vec3& mm, LengthUnit unit) {
+  if (unit == LengthUnit::kMm) return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", mm.x, mm.y, mm.z);
+  const Vec3 inch = mm / kMmPerInch;
+  return fmt::format("X{:.4f} Y{:.4f} Z{:.4f}", inch.x, inch.y, inch.z);
 }
 
-std::string waiting_members(const std::string& notice) {
-  LiveStatus status;
+std::string line_text(const std::string& file, int line) {
+  return fmt::format("{}:{}", file_name(file), line);
+}
+
+ShopMoment moment_of(const LiveStatus& status, const std::string& tool_name, LengthUnit unit) {
+  const ToolState& place = status.place;
+  ShopMoment out;
+  out.state = to_string(status.state);
+  out.state_text = tr(to_string(status.state));
+  if (status.state != LiveState::kWaiting && status.state != LiveState::kEnded)
+    out.age_s = status.age_s;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    out.rows.emplace_back(name, value);
+  };
+  if (place.followed) {
+    out.file = status.file;
+    out.line = static_cast<int>(place.source.line);
+    add(tr("Program"), line_text(out.file, out.line));
+  }
+  if (place.followed && status.remaining_s >= 0)
+    add(tr("Time left"), time_left_text(status.remaining_s));
+  if (place.known) {
+    out.tip_mm = place.tip_mm;
+    add(tr("Position"), place_text(place.tip_mm, unit));
+  }
+  out.axis = place.spindle;
+  if (place.tool >= 0) add(tr("Tool"), fmt::format("T{} {}", place.tool, tool_name));
+  if (status.feed_mm_per_min)
+    add(tr("Feed"), in_unit(fmt::format("{:.0f} mm/min", *status.feed_mm_per_min), unit));
+  if (std::isfinite(place.spindle_rpm))
+    add(tr("Spindle"), fmt::format("{:.0f} rpm", place.spindle_rpm));
+  if (status.load) add(tr("Load"), text_of(*status.load));
+  if (status.run > 1) add(tr("Run"), trf("{}, part {}", status.run, status.part));
+  add(tr("Removed"), in_unit(fmt::format("{:.2f} cm3", status.removed_mm3 / 1000), unit));
+  if (status.dropped > 0 || status.source.lost > 0)
+    add(tr("Lost positions"), std::to_string(status.dropped + status.source.lost));
+  out.notice = in_unit(notice_of(status), unit);
+  out.is_alarm = status.collision_in_s >= 0;
+  return out;
+}
+
+ShopMoment waiting_moment(const std::string& notice) {
+  ShopMoment out;
+  out.state_text = tr(to_string(LiveState::kWaiting));
+  out.notice = notice;
+  return out;
+}
+
+std::string state_members(const ShopMoment& moment, const std::vector<ShownLine>& code) {
   ShopJson out;
-  out["state"] = to_string(status.state);
-  out["state_text"] = tr(to_string(status.state));
-  out["age_s"] = 0;
+  out["state"] = moment.state;
+  out["state_text"] = moment.state_text;
+  out["age_s"] = moment.age_s ? ShopJson(rounded(*moment.age_s)) : ShopJson(nullptr);
   out["told_ms"] = now_ms();
   out["rows"] = ShopJson::array();
-  out["notice"] = notice;
-  out["is_alarm"] = false;
-  out["line"] = 0;
+  for (const auto& [name, value] : moment.rows) out["rows"].push_back({name, value});
+  out["notice"] = moment.notice;
+  out["is_alarm"] = moment.is_alarm;
+  out["line"] = moment.line;
   out["code"] = ShopJson::array();
-  out["tip_mm"] = nullptr;
+  for (const ShownLine& line : code) out["code"].push_back({line.number, line.text});
+  out["tip_mm"] = moment.tip_mm ? vector_json(*moment.tip_mm) : ShopJson(nullptr);
+  out["axis"] = vector_json(moment.axis);
   return members_of(out);
 }
 

@@ -2,7 +2,9 @@
 // object. Texts are in the language of the process.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/geometry.h"
@@ -19,13 +21,33 @@ struct ShownLine {
   std::string text;
 };
 
-/// state (to_string(LiveState)), state_text, age_s, told_ms (when that was: since 1970, UTC), rows
-/// (pairs of texts), notice and is_alarm, line, code (pairs of number and text), tip_mm or null,
-/// axis.
-std::string state_members(const LiveStatus& status, const std::string& tool_name,
-                          const std::vector<ShownLine>& code, LengthUnit unit);
-/// The same of nothing but a notice, while there is no session.
-std::string waiting_members(const std::string& notice);
+/// What a page shows beside the part, at one time.
+struct ShopMoment {
+  std::string state = "waiting";  ///< how the page colours its text: to_string(LiveState)
+  std::string state_text;
+  std::optional<double> age_s;                            ///< of what is shown; none: it has no age
+  std::vector<std::pair<std::string, std::string>> rows;  ///< as they are shown
+  std::string notice;
+  bool is_alarm = false;
+  std::string file;            ///< of the program's line
+  int line = 0;                ///< 0: none is known
+  std::optional<Vec3> tip_mm;  ///< none: no tool is drawn
+  Vec3 axis{0, 0, 1};
+};
+
+/// Of a machine that is watched.
+ShopMoment moment_of(const LiveStatus& status, const std::string& tool_name, LengthUnit unit);
+/// Nothing but a notice, while there is nothing to be shown.
+ShopMoment waiting_moment(const std::string& notice);
+
+/// state, state_text, age_s or null, told_ms (when that was: since 1970, UTC), rows (pairs of
+/// texts), notice and is_alarm, line, code (pairs of number and text), tip_mm or null, axis.
+std::string state_members(const ShopMoment& moment, const std::vector<ShownLine>& code = {});
+
+/// For rows: "X1.000 Y2.000 Z3.000", with as many digits whatever the place.
+std::string place_text(const Vec3& mm, LengthUnit unit);
+/// For the row of the program: "part.ngc:12".
+std::string line_text(const std::string& file, int line);
 
 /// What stays: title, source, box, turns, tool_shape (outlines, radius and height, from below to
 /// above; plates).

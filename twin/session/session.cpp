@@ -60,8 +60,18 @@ ProgramSummary Session::interpret(Program& program, const MotionSink& sink, std:
   return summary;
 }
 
-/// False: no more motions are wanted.
+/// In parts, where the observer asks for them. False: no more motions are wanted.
 bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
+  while (!motions.empty()) {
+    const std::size_t most = observer_ ? observer_->most_motions() : motions.size();
+    const std::span<const Motion> some = motions.first(std::min(most, motions.size()));
+    if (!cut_some(stage, some)) return false;
+    motions = motions.subspan(some.size());
+  }
+  return true;
+}
+
+bool Session::cut_some(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
   const WorkpieceFrame& frame = (second_pass_ ? *second_pass_ : *front_.program).workpiece_frame();
   motions = switched_.follow(motions, frame);
@@ -70,7 +80,10 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   if (must_begin_again()) return false;
   stage.set_frame(frame);
   if (materials_.take(taken_materials_)) stage.set_materials(taken_materials_);
-  if (!recorders_.empty() && files_.take(taken_files_)) recorders_.name_files(taken_files_);
+  if ((observer_ || !recorders_.empty()) && files_.take(taken_files_)) {
+    recorders_.name_files(taken_files_);
+    if (observer_) observer_->on_files(taken_files_);
+  }
   const bool silent = !window_.begun();
   if (silent) stage.hold_reports();
   const LineWindow::Split split = window_.split(motions);

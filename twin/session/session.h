@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,6 +44,12 @@ class SessionObserver {
   /// (the times of the last motions, and so their cuts, wait for what follows). The last call
   /// brings no motions: everything is cut.
   virtual void on_cut(const StockModel& stock, std::span<const Motion> motions, double end_s) = 0;
+  /// The files that sources of motions name by their numbers, before the first motion that does;
+  /// whenever there are more.
+  virtual void on_files(std::span<const std::string> files) { static_cast<void>(files); }
+  /// Asked before each on_cut(): of so many motions it is to be told at most, at least 1. Few cost
+  /// time.
+  virtual std::size_t most_motions() const { return std::numeric_limits<std::size_t>::max(); }
 };
 
 /// Runs a program through a Z-map. Two threads: one reads the interpreter, the caller's cuts;
@@ -125,6 +133,7 @@ class Session {
   void watch_tools(std::span<const Motion> motions);
   bool begin_again(std::stop_token stop, Diagnostics& diagnostics, Outcome& outcome);
   bool cut_batch(CutStage& stage, std::span<const Motion> motions);
+  bool cut_some(CutStage& stage, std::span<const Motion> motions);
   std::optional<Outcome> cut_and_report(std::stop_token stop, Diagnostics& diagnostics);
   Outcome conclude(bool stopped);
   void complete_report(const CutStage& stage);

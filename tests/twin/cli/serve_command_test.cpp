@@ -77,13 +77,28 @@ TEST(ServeCommand, APortThatIsTakenIsAFailureThatSaysSo) {
   EXPECT_NE(result.err.find("--serve: " + address), std::string::npos) << result.err;
 }
 
-TEST(ServeCommand, ADryRunSaysWhoHasIt) {
+TEST(ServeCommand, APictureOrSeveralProgramsHaveNoPage) {
+  const TestFolder folder;
+  const std::string part = folder.write("part.ngc", "G21\nM2\n");
+  const std::string other = folder.write("other.ngc", "G21\nM2\n");
   KerfCall call;
-  call.arguments = {"run", "part.ngc", "--serve"};
+  call.arguments = {"run", part, other, "--serve=0"};
+  KerfResult result = run_kerf(call);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--serve: one page, and there are several programs"), std::string::npos)
+      << result.err;
+  call.arguments = {"view", part, "--png", folder.file("part.png"), "--serve=0"};
+  result = run_kerf(call);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--serve: is for the window"), std::string::npos) << result.err;
+}
+
+TEST(ServeCommand, WhoDoesNotHaveItSaysWhoHas) {
+  KerfCall call;
+  call.arguments = {"job", "part.yaml", "--serve"};
   const KerfResult result = run_kerf(call);
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("kerf shadow and kerf replay have it"), std::string::npos)
-      << result.err;
+  EXPECT_NE(result.err.find("kerf run has it"), std::string::npos) << result.err;
 }
 
 TEST(ServeCommand, TakesTheNextWordUnlessThatIsAnOptionOrAFile) {

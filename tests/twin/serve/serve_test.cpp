@@ -254,6 +254,42 @@ TEST(ServedScene, AnotherWorkpieceIsAllNew) {
   EXPECT_EQ(after.state["findings_count"], 0);
 }
 
+TEST(ServedScene, AnotherWorkpieceOfTheSameSessionKeepsItsFindings) {
+  ServedScene scene;
+  scene.set_patch(3, tile_of(3, 40));
+  scene.add_finding(R"({"text":"one"})");
+  const Answer before = answer_of(scene, {}, 40);
+  scene.begin_part_anew();
+  const Answer after = answer_of(scene, before.seen, 40);
+  EXPECT_NE(after.seen.epoch, before.seen.epoch);
+  EXPECT_TRUE(after.tiles.empty());
+  EXPECT_EQ(after.state["findings"].size(), 1U);
+}
+
+TEST(ServedScene, OfAListThatGoesOnPagesGetWhatIsNewElseAllOfIt) {
+  ServedScene scene;
+  scene.set_findings({R"({"text":"a"})", R"({"text":"b"})"}, 2);
+  Answer answer = answer_of(scene, {}, 40);
+  EXPECT_EQ(answer.state["findings_from"], 0);
+  EXPECT_EQ(answer.state["findings"].size(), 2U);
+
+  scene.set_findings({R"({"text":"a"})", R"({"text":"b"})", R"({"text":"c"})"}, 5);
+  EXPECT_TRUE(scene.has_news(answer.seen));
+  answer = answer_of(scene, answer.seen, 40);
+  EXPECT_EQ(answer.state["findings_from"], 2);
+  EXPECT_EQ(answer.state["findings"], Json::parse(R"([{"text":"c"}])"));
+  EXPECT_EQ(answer.state["findings_count"], 5);
+  answer.seen.findings = 3;
+
+  scene.set_findings({R"({"text":"a"})", R"({"text":"b"})", R"({"text":"c"})"}, 5);
+  EXPECT_FALSE(scene.has_news(answer.seen)) << "the same again is nothing new";
+
+  scene.set_findings({R"({"text":"a"})", R"({"text":"x"})"}, 2);
+  answer = answer_of(scene, answer.seen, 40);
+  EXPECT_EQ(answer.state["findings_from"], 0);
+  EXPECT_EQ(answer.state["findings"], Json::parse(R"([{"text":"a"},{"text":"x"}])"));
+}
+
 TEST(ServedScene, AnswersAreBoundedAndATileThatChangesOnAndOnKeepsNoOtherBack) {
   ServedScene scene;
   constexpr std::size_t kSize = 20'000;
@@ -314,7 +350,8 @@ TEST(ShopState, SaysWhatIsKnownInTheReadersUnit) {
   status.place.tool = 3;
   status.place.spindle_rpm = std::nan("");
   const Json mm = Json::parse(
-      "{" + state_members(status, "flat 8", {{12, "G1 <b>\xff"}}, LengthUnit::kMm) + "}");
+      "{" + state_members(moment_of(status, "flat 8", LengthUnit::kMm), {{12, "G1 <b>\xff"}}) +
+      "}");
   EXPECT_EQ(mm["state"], "live");
   EXPECT_EQ(mm["line"], 12);
   EXPECT_EQ(mm["code"][0][0], 12);
@@ -325,7 +362,8 @@ TEST(ShopState, SaysWhatIsKnownInTheReadersUnit) {
   EXPECT_EQ(mm["is_alarm"], false);
   status.collision_in_s = 1.5;
   status.collision_line = 40;
-  const Json inch = Json::parse("{" + state_members(status, "flat 8", {}, LengthUnit::kInch) + "}");
+  const Json inch =
+      Json::parse("{" + state_members(moment_of(status, "flat 8", LengthUnit::kInch)) + "}");
   EXPECT_EQ(inch["rows"][2][1], "X1.0000 Y0.0000 Z-0.1000");
   EXPECT_EQ(inch["is_alarm"], true);
   EXPECT_EQ(inch["notice"], "collision in 1.5 s, line 40");

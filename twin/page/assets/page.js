@@ -389,42 +389,9 @@ function begin() {
     return;
   }
   holder.querySelectorAll(".none").forEach((n) => n.remove());
-  const pointers = new Map();
-  let moved = 0, spread = 0;
-  canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); pointers.set(e.pointerId, [e.offsetX, e.offsetY]); moved = 0; spread = 0; });
-  canvas.addEventListener("pointermove", (e) => {
-    const last = pointers.get(e.pointerId);
-    if (!last) return;
-    const dx = e.offsetX - last[0], dy = e.offsetY - last[1];
-    pointers.set(e.pointerId, [e.offsetX, e.offsetY]);
-    moved += Math.abs(dx) + Math.abs(dy);
-    if (pointers.size === 2) {
-      const [a, b] = [...pointers.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      if (spread > 0) view.zoom(d / spread);
-      spread = d;
-      view.drag(dx / 2, dy / 2, true);
-    } else {
-      view.drag(dx, dy, e.shiftKey || (e.buttons & 6) !== 0);
-    }
-  });
-  const up = (e) => {
-    if (pointers.delete(e.pointerId) && moved < 4 && e.type === "pointerup") {
-      const number = view.markAt(e.offsetX, e.offsetY);
-      if (number >= 0) choose(number);
-    }
-    spread = 0;
-  };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.zoom(Math.exp(-e.deltaY * 0.0012)); }, { passive: false });
-  canvas.addEventListener("keydown", (e) => {
-    const keys = { ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12] };
-    if (keys[e.key]) view.drag(...keys[e.key], e.shiftKey);
-    else if (e.key === "+") view.zoom(1.2);
-    else if (e.key === "-") view.zoom(1 / 1.2);
-    else return;
-    e.preventDefault();
+  listenToHand(canvas, view, (x, y) => {
+    const number = view.markAt(x, y);
+    if (number >= 0) choose(number);
   });
   for (const button of root.querySelectorAll("[data-look]"))
     button.addEventListener("click", () => button.dataset.look === "reset" ? view.reset() : view.look(button.dataset.look));

@@ -11,18 +11,12 @@ namespace {
 
 /// What is thinner is not there: what a pass leaves of the one before, by rounding.
 constexpr double kThinnestFront_mm = 0.002;
-/// Directions to begin with, from one side to the other.
-constexpr int kRays = FrontRays::kMost;
 /// Radii along a ray, of cutters that are not flat; fewer, in some directions, to learn how far out
 /// they are in material at all; and steps to where they are.
 constexpr int kRadii = 30, kBriefRadii = 10, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
 constexpr double kLeastStep = 0.1;
 /// What is no farther above material, of the radius, may be in some between two radii.
 constexpr double kNearMaterial = 0.06;
-/// A chip that is thinner counts by its thickness: it is next to nothing.
-constexpr double kThinChip_mm = 0.05;
-/// What is thinner has been cut: the model's rounding.
-constexpr double kThinnestFilm_mm = 2e-4;
 /// Four cells whose heights differ by more cells than that have a wall between them.
 constexpr double kWallCells = 3;
 /// So much of a cell is no even surface between four of them: there is an edge.
@@ -35,8 +29,6 @@ constexpr double kAheadCells = 0.1;
 constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
-/// Rounding of the cutter's own radius.
-constexpr double kSameRadius = 1e-9;
 /// Places across the disc of one that goes straight down, each way.
 constexpr int kDiscPlaces = 24;
 
@@ -223,11 +215,21 @@ double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
   return behind_itself(point, behind_held(point, height));
 }
 
-/// How high over its tip the cutter's surface is at a place.
-double EngagementScan::lift_at(const Vec2& point, const Station& station) const {
-  const double scaled = std::min(glm::length(point - station.center) * lift_scale_, double{kLifts});
+/// How high over its tip the cutter's surface is.
+double EngagementScan::lift_of(double radius) const {
+  const double scaled = std::min(radius * lift_scale_, double{kLifts});
   const auto k = static_cast<std::size_t>(scaled);
   return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
+}
+
+/// How much it rises there for each mm of the radius.
+double EngagementScan::slope_of(double radius) const {
+  const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
+  return (lift_[k + 1] - lift_[k]) * lift_scale_;
+}
+
+double EngagementScan::lift_at(const Vec2& point, const Station& station) const {
+  return lift_of(glm::length(point - station.center));
 }
 
 /// Material over the cutter's surface, which between four cells is what it is at these: what this
@@ -296,10 +298,7 @@ FrontContact EngagementScan::contact_at(const Station& station, double angle) {
 /// How deep the cutter's surface is in material along one direction.
 double EngagementScan::over_ray(const Ray& ray, double radius) const {
   // Up a slope what it leaves beside it, and nearer to its tip, it has cut from farther back.
-  if (ray.slope > 0) {
-    const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
-    if ((lift_[k + 1] - lift_[k]) * lift_scale_ * ray.ahead <= ray.slope) return -kThinnestFilm_mm;
-  }
+  if (ray.slope > 0 && slope_of(radius) * ray.ahead <= ray.slope) return -kThinnestFilm_mm;
   return over_surface(*ray.station, ray.station->center + radius * ray.out) - kThinnestFilm_mm;
 }
 
@@ -382,15 +381,10 @@ void EngagementScan::look_along(const Ray& ray) {
 void EngagementScan::round_contact(const Station& station, double angle, FrontContact& found) {
   const Ray ray = ray_at(station, angle);
   look_along(ray);
-  const auto lift = [&](double radius) {
-    const double scaled = std::min(radius * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
-  };
   const auto take = [&](const RayPlace& from, const RayPlace& to) {
     const double width = std::abs(to.radius - from.radius);
     if (width <= 0) return;
-    const double rise = std::abs(lift(to.radius) - lift(from.radius));
+    const double rise = std::abs(lift_of(to.radius) - lift_of(from.radius));
     const double normal = width / std::hypot(width, rise);
     found.high_mm += rise * counted(normal * from.depth, normal * to.depth);
   };
@@ -496,6 +490,11 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   // What stands right before it is removed next.
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
+  if (asked.is_brief && is_fine()) {
+    EngagementLook look = look_by_cells(station, asked.anticlockwise);
+    if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));
+    return look;
+  }
   reach_ = reach_of(station);
   FrontRays rays(kRays, radius_, is_flat());
   rays.sweep([&](double angle) { return contact_at(station, angle); });

@@ -151,6 +151,12 @@ double EngagementScan::behind_held(const Vec2& point, double height) const {
   if (held.rise == 0) return std::min(height, surface_at(std::clamp(along, low, high)));
   if (is_flat())
     return std::min(height, held.z + held.rise * (held.rise < 0 ? high : low) / held.length);
+  // A ball is lowest where its sphere, cut along the way, leans as the way does.
+  if (is_ball_) {
+    const double slope = held.rise / held.length;
+    const double at = along - slope * half / std::sqrt(1 + slope * slope);
+    return std::min(height, surface_at(std::clamp(at, low, high)));
+  }
   const double least = golden_section(surface_at, low, high, kHeldSteps).least;
   return std::min(height, least - kHeldSlack_mm);
 }

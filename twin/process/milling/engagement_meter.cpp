@@ -22,8 +22,9 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
-constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 30'000, kShareOfCells = 0.25;
-constexpr double kBrief = 0.4;  ///< of a look, one in brief
+constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 100'000, kShareOfCells = 0.25;
+/// Of a look, one in brief: by its cells, and of coarse ones.
+constexpr double kBrief = 0.15, kCoarseBrief = 0.4;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
@@ -229,10 +230,11 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     since_mm_ = -1;
   } else if (length_mm_ < farthest) {
     const EngagementLook before = last_;
-    // What has to be looked at, though nothing is saved up for it.
-    is_brief_ = saved_cells_ < 0;
+    // Often in brief is better than seldom.
+    is_brief_ = saved_cells_ < look_cells_;
     last_ = look(0.5);
-    saved_cells_ -= is_brief_ ? kBrief * look_cells_ : look_cells_;
+    const bool is_fine = cutter_->radius_mm() >= EngagementScan::kFineCells * stock_.cell_mm();
+    saved_cells_ -= look_cells_ * (!is_brief_ ? 1 : is_fine ? kBrief : kCoarseBrief);
     is_brief_ = false;
     const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
     spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;

@@ -78,12 +78,19 @@ void EngagementScan::set_cutter(const Cutter& cutter) {
   cutter_spec_ = cutter.spec();
   radius_ = cutter.radius_mm();
   flat_radius_ = flat_radius(cutter);
+  is_ball_ = is_ball_end(cutter);
+  weighed_mm_ = 0;
   lift_.resize(kLifts + 2);
   lift_scale_ = kLifts / radius_;
   for (int k = 0; k <= kLifts; ++k) {
     lift_[static_cast<std::size_t>(k)] = cutter.height_mm(std::min(radius_ * k / kLifts, radius_));
   }
   lift_[kLifts + 1] = lift_[kLifts];
+  low_lift_.resize(kLifts + 2);
+  for (int k = 0; k <= kLifts + 1; ++k) {
+    const double inner = std::max(0.0, std::sqrt(static_cast<double>(k) / kLifts) - 1.0 / kLifts);
+    low_lift_[static_cast<std::size_t>(k)] = cutter.height_mm(std::min(inner, 1.0) * radius_);
+  }
   profile_.assign(kLifts + 2, 0.0);
   for (std::size_t k = 1; k <= kLifts; ++k) {
     const bool rises = static_cast<double>(k) > flat_radius_ * lift_scale_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "base/geometry.h"
 #include "twin/process/engagement.h"
@@ -41,6 +42,13 @@ class FrontRays {
   /// `contact_at(angle)` gives a FrontContact.
   template <class ContactAt>
   void sweep(const ContactAt& contact_at);
+  /// Instead: what is known at even steps from one side to the other, of what is not flat, and of
+  /// the lateral places from `low_mm` to `high_mm` (to the left) where it is in material.
+  /// `wall_at(angle)`: what stands over the profile's end besides (edge_mm) and how deep that is;
+  /// asked for at the steps, and more closely where it begins or ends.
+  template <class WallAt>
+  void take(std::span<const FrontContact> contacts, const WallAt& wall_at, double low_mm,
+            double high_mm);
   /// angle, width, depth, entry, exit, climb, effective diameter and edge of all that was found.
   EngagementLook look(bool anticlockwise) const;
 
@@ -147,6 +155,59 @@ void FrontRays::find_edge(const ContactAt& contact_at, int k, bool is) {
   const double edge = 0.5 * (in + off);
   if (radius_mm > 0) widen(radius_mm, edge);
   count(is ? edge : from, is ? to : edge);
+}
+
+template <class WallAt>
+void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_at, double low_mm,
+                     double high_mm) {
+  low_mm_ = low_mm, high_mm_ = high_mm;
+  const auto steps = static_cast<double>(contacts.size() - 1);
+  const auto angle_of = [steps](std::size_t k) {
+    return kPi * (static_cast<double>(k) / steps - 0.5);
+  };
+  // Steps at the very sides are a little before them: what is at a side itself is passed by.
+  const auto wall_of = [&](std::size_t k) {
+    return wall_at(std::clamp(angle_of(k), kRim_rad - kPi / 2, kPi / 2 - kRim_rad));
+  };
+  const auto note_wall = [&](const FrontContact& at, const FrontContact& wall, double angle) {
+    FrontContact both = at;
+    if (wall.edge_mm > 0) {
+      both.radius_mm = radius_mm_;
+      both.deep_mm = std::max(at.deep_mm, wall.deep_mm);
+      both.edge_mm += wall.edge_mm;
+    }
+    if (both.radius_mm <= 0) return;
+    found_.deep_mm = std::max(found_.deep_mm, both.deep_mm);
+    found_.effective_mm = std::max(found_.effective_mm, 2 * both.radius_mm);
+    found_.contact_mm = std::max(found_.contact_mm, both.edge_mm);
+    if (wall.edge_mm > 0) widen(radius_mm_, angle);
+  };
+  FrontContact before = wall_of(0);
+  note_wall(contacts[0], before, angle_of(0));
+  for (std::size_t k = 1; k < contacts.size(); ++k) {
+    const FrontContact wall = wall_of(k);
+    note_wall(contacts[k], wall, angle_of(k));
+    const double from = angle_of(k - 1), to = angle_of(k);
+    const double low = contacts[k - 1].high_mm, high = contacts[k].high_mm;
+    if ((before.edge_mm > 0) == (wall.edge_mm > 0)) {
+      add({from, low + before.edge_mm}, {to, high + wall.edge_mm});
+    } else {
+      const bool begins = wall.edge_mm > 0;
+      const FrontContact& known = begins ? wall : before;
+      double in = begins ? to : from, off = begins ? from : to;
+      for (int n = 0; n < kHalvings; ++n) {
+        const double middle = 0.5 * (in + off);
+        (wall_at(middle).edge_mm > 0 ? in : off) = middle;
+      }
+      const double edge = 0.5 * (in + off),
+                   there = low + (edge - from) / (to - from) * (high - low);
+      widen(radius_mm_, edge);
+      add({from, low + before.edge_mm}, {edge, there + (begins ? 0 : known.edge_mm)});
+      add({edge, there + (begins ? known.edge_mm : 0)}, {to, high + wall.edge_mm});
+    }
+    before = wall;
+  }
+  if (found_.effective_mm > 0) settle();
 }
 
 /// In halves, as long as heights do not change evenly.

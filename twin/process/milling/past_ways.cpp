@@ -23,6 +23,14 @@ double between(const std::vector<double>& table, double part) {
   return table[k] + (scaled - static_cast<double>(k)) * (table[k + 1] - table[k]);
 }
 
+/// The angle of a point of a circle from where an arc begins, in its sense: 0 .. 2 pi.
+double behind_start(double angle, double start, double sweep) {
+  const double turned = std::fmod(sweep < 0 ? start - angle : angle - start, 2 * kPi);
+  return turned < 0 ? turned + 2 * kPi : turned;
+}
+
+}  // namespace
+
 bool is_ball_end(const Cutter& cutter) {
   const double radius = cutter.radius_mm();
   for (const double part : {0.2, 0.5, 0.8, 0.99}) {
@@ -31,14 +39,6 @@ bool is_ball_end(const Cutter& cutter) {
   }
   return true;
 }
-
-/// The angle of a point of a circle from where an arc begins, in its sense: 0 .. 2 pi.
-double behind_start(double angle, double start, double sweep) {
-  const double turned = std::fmod(sweep < 0 ? start - angle : angle - start, 2 * kPi);
-  return turned < 0 ? turned + 2 * kPi : turned;
-}
-
-}  // namespace
 
 double PastWays::Tool::reach_mm(double above_tip_mm) const {
   if (above_tip_mm < 0) return -1;

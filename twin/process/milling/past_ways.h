@@ -12,6 +12,9 @@
 
 namespace kerf {
 
+/// A half sphere, to a billionth of its radius.
+bool is_ball_end(const Cutter& cutter);
+
 /// Moves of upright tools by their numbers, which a workpiece keeps for each of its cells
 /// (StockModel::keep_cut_ids). Several moves may have one number: of these the last kMostOfOne are
 /// asked. 48 bytes a move, 80 an arc. One thread.

@@ -10,7 +10,6 @@ namespace {
 constexpr double kBendsDown = 0.25;
 /// Heights are floats.
 constexpr double kRounding_mm = 2e-5;
-constexpr int kHalvings = 30;
 
 /// Through the values of three cells, at a place in cells from the first.
 double parabola(double a, double b, double c, double at) {
@@ -53,13 +52,16 @@ ScallopScan::Crest ScallopScan::crest_at(std::size_t first, std::size_t last) co
   const auto right = [&](double at) {
     return parabola(z_[last + 2], z_[last + 1], z_[last], static_cast<double>(last + 2) - at);
   };
-  double low = static_cast<double>(first) - 0.5, high = static_cast<double>(last) + 0.5;
-  if (left(low) > right(low) || left(high) < right(high)) return crest;
-  for (int n = 0; n < kHalvings; ++n) {
-    const double middle = 0.5 * (low + high);
-    (left(middle) < right(middle) ? low : high) = middle;
-  }
-  crest.at = low, crest.height = left(low);
+  // Their difference is a parabola, too: through its values at both ends and between them.
+  const double low = static_cast<double>(first) - 0.5, high = static_cast<double>(last) + 0.5;
+  const double half = 0.5 * (high - low);
+  const auto apart = [&](double at) { return left(at) - right(at); };
+  const double begin = apart(low), middle = apart(low + half), end = apart(high);
+  if (begin > 0 || end < 0) return crest;
+  const double bend = 0.5 * (begin - 2 * middle + end), slope = middle - begin - bend;
+  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * begin));
+  const double steps = slope + root > 0 ? -2 * begin / (slope + root) : 1;
+  crest.at = low + half * std::clamp(steps, 0.0, 2.0), crest.height = left(crest.at);
   return crest;
 }
 

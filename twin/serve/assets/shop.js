@@ -232,36 +232,7 @@ const view = makeView(canvas);
 if (!view) { by("loading").hidden = false; by("loading").textContent = texts.no_drawing; }
 
 function listen() {
-  const pointers = new Map();
-  let spread = 0;
-  canvas.addEventListener("pointerdown", (e) => { pointers.set(e.pointerId, [e.clientX, e.clientY]); canvas.setPointerCapture(e.pointerId); });
-  canvas.addEventListener("pointermove", (e) => {
-    const before = pointers.get(e.pointerId);
-    if (!before) return;
-    const dx = e.clientX - before[0], dy = e.clientY - before[1];
-    pointers.set(e.pointerId, [e.clientX, e.clientY]);
-    if (pointers.size === 2) {
-      const [a, b] = [...pointers.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      if (spread > 0) view.zoom(d / spread);
-      spread = d;
-      view.drag(dx / 2, dy / 2, true);
-    } else {
-      view.drag(dx, dy, e.shiftKey || (e.buttons & 6) !== 0);
-    }
-  });
-  const up = (e) => { pointers.delete(e.pointerId); spread = 0; };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.zoom(Math.exp(-e.deltaY * 0.0012)); }, { passive: false });
-  canvas.addEventListener("keydown", (e) => {
-    const keys = { ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12] };
-    if (keys[e.key]) view.drag(...keys[e.key], e.shiftKey);
-    else if (e.key === "+") view.zoom(1.2);
-    else if (e.key === "-") view.zoom(1 / 1.2);
-    else return;
-    e.preventDefault();
-  });
+  listenToHand(canvas, view);
   for (const button of document.querySelectorAll("[data-look]"))
     button.addEventListener("click", () => view.look(button.dataset.look));
   new ResizeObserver(() => view.redraw()).observe(canvas);
@@ -287,7 +258,7 @@ function showState() {
   if (!state) { badge.textContent = isCut ? texts.no_answer : texts.connecting; badge.className = isCut ? "cut" : "waiting"; return; }
   const age = state.age_s + (performance.now() - received) / 1000;
   badge.className = isCut ? "cut" : state.state;
-  badge.textContent = isCut ? texts.no_answer : state.state === "ended" || state.state === "waiting" ? state.state_text : `${state.state_text}, ${fill(texts.old, ageText(age))}`;
+  badge.textContent = isCut ? texts.no_answer : state.age_s === null ? state.state_text : `${state.state_text}, ${fill(texts.old, ageText(age))}`;
 }
 
 function showNews(news) {
@@ -308,13 +279,14 @@ function showNews(news) {
   by("alarm").hidden = !news.notice;
   by("alarm").textContent = news.notice || "";
   by("alarm").className = news.is_alarm ? "" : "warning";
+  while (by("findings").children.length > news.findings_from) by("findings").lastChild.remove();
   for (const finding of news.findings) {
     const made = item("li", finding.text, finding.severity);
     if (finding.line > 0) made.append(item("small", `${finding.file} ${fill(texts.line, finding.line)}`));
     by("findings").append(made);
   }
   const listed = by("findings").children.length;
-  by("counts").textContent = news.findings_count ? news.findings_count : texts.no_findings;
+  by("counts").textContent = news.findings_count ? news.findings_count : news.state === "ended" ? texts.none : texts.no_findings;
   by("more").hidden = news.findings_count <= listed;
   by("more").textContent = fill(texts.more_findings, news.findings_count - listed);
 }

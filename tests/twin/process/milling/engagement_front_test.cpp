@@ -53,6 +53,11 @@ class EngagementFrontTest : public testing::Test {
     return scan_.look_ahead(*heights, parse_shape(shape).value(), move,
                             {at, held, anticlockwise, stock_.get(), &ways_});
   }
+  EngagementLook brief(const std::string& shape, const CutMove& move, double at = 0.5) {
+    const std::optional<HeightGrid> heights = stock_->present_heights();
+    return scan_.look_ahead(*heights, parse_shape(shape).value(), move,
+                            {at, nullptr, false, stock_.get(), &ways_, true});
+  }
 
   std::unique_ptr<ZMap> stock_;
   PastWays ways_;
@@ -76,6 +81,34 @@ TEST_F(EngagementFrontTest, ASlotIsHalfOfTheEdgeAndAllOfTheWidth) {
     EXPECT_NEAR(ball.deep_mm, 2, 0.02);
     EXPECT_NEAR(look("vee:8:90", way(from, to)).wide_mm, 4, 0.15);
   }
+}
+
+/// By its cells alone: a slot, a slot deeper than the ball is high, the step beside a pass, and
+/// nothing where it has been.
+TEST_F(EngagementFrontTest, InBriefABallIsWhereItsCellsAre) {
+  for (const Vec2 ahead : {Vec2(1, 0), Vec2(0, 1), Vec2(-0.6, 0.8)}) {
+    const Vec3 from(Vec2(30, 20) - 5.0 * ahead, -2), to(Vec2(30, 20) + 5.0 * ahead, -2);
+    const EngagementLook slot = brief("ball:8", way(from, to));
+    EXPECT_NEAR(slot.angle_rad, kPi, 4 * kDegree);
+    EXPECT_NEAR(slot.wide_mm, 2 * std::sqrt(12.0), 0.15);
+    EXPECT_NEAR(slot.effective_mm, 2 * std::sqrt(12.0), 0.15);
+    EXPECT_NEAR(slot.deep_mm, 2, 0.02);
+    EXPECT_NEAR(slot.climb, 0.5, 0.02);
+    const EngagementLook deep = brief("ball:8", way(from + Vec3(0, 0, -4), to + Vec3(0, 0, -4)));
+    EXPECT_NEAR(deep.angle_rad, kPi, 2 * kDegree);
+    EXPECT_NEAR(deep.wide_mm, 8, 0.01);
+    EXPECT_NEAR(deep.deep_mm, 6, 0.02);
+  }
+  cut("ball:8", way({-10, 20, -2}, {70, 20, -2}));
+  EXPECT_FALSE(brief("ball:8", way({-10, 20, -2}, {70, 20, -2})).is_engaged());
+  // The two circles meet in the middle, and the new one is out of the block sqrt(12) from its own.
+  const EngagementLook step = brief("ball:8", way({-10, 22, -2}, {70, 22, -2}));
+  EXPECT_NEAR(step.wide_mm, 1 + std::sqrt(12.0), 0.1);
+  EXPECT_NEAR(step.deep_mm, look("ball:8", way({-10, 22, -2}, {70, 22, -2})).deep_mm, 0.1);
+  EXPECT_GT(step.climb, 0.99 * (look("ball:8", way({-10, 22, -2}, {70, 22, -2})).climb));
+  // Beside the block, and past its end, there is air.
+  EXPECT_FALSE(brief("ball:8", way({0, -4.2, -2}, {60, -4.2, -2})).is_engaged());
+  EXPECT_FALSE(brief("ball:8", way({55, 30, -2}, {75, 30, -2}), 0.9).is_engaged());
 }
 
 /// The angle of a side cut of width a with a diameter D is acos(1 - 2 a / D).

@@ -28,7 +28,7 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
   std::uniform_real_distribution<double> unit(0, 1);
   const Cutter cutter = parse_shape(shape).value();
   const Cutter other = parse_shape("flat:5").value();
-  EngagementErrors off;
+  EngagementErrors off, brief;
   const int rounds = kIsSanitized ? 2 : 6;
   for (int round = 0; round < rounds; ++round) {
     ZMapOptions options;
@@ -68,6 +68,8 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
           const EngagementLook found = scan.look_ahead(*heights, cutter, move, asked);
           const EngagementTruth truth = oracle.look(cutter, move, part);
           off.add(found, truth);
+          asked.is_brief = true;
+          brief.add(scan.look_ahead(*heights, cutter, move, asked), truth);
         }
       }
       const Cutter& by = by_other ? other : cutter;
@@ -83,9 +85,12 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
   }
   EXPECT_GT(off.looks, 33 * rounds);
   RecordProperty("errors", off.text());
+  RecordProperty("errors_in_brief", brief.text());
   // At a rim all of them. Of what is not flat material may be thinner, beside a pass, than the
   // directions and radii of a look are apart: half of those that are off are so.
   const bool flat = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
+  // Cells alone know walls to half of one.
+  EXPECT_GE(brief.within, (flat ? 1.0 : 0.6) * brief.looks) << brief.text();
   EXPECT_GE(off.within, (flat ? 1.0 : kIsSanitized ? 0.8 : 0.9) * off.looks) << off.text();
 }
 

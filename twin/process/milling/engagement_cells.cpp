@@ -1,0 +1,196 @@
+// EngagementScan at one place of the way, in brief: what stands over the cutter, cell by cell.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "twin/process/milling/engagement_scan.h"
+
+namespace kerf {
+namespace {
+
+/// Of more cells across its radius every n-th is asked.
+constexpr double kManyCells = 20;
+/// From where a cell is at it, a direction may be seen from so many sides of it.
+constexpr int kMostSpread = 12;
+/// Looking for where material ends, so many cells beyond the last in it.
+constexpr double kBeyond_cells = 1.5;
+/// From the deepest cell to the next one, so many places.
+constexpr int kDeepSteps = 4;
+
+}  // namespace
+
+/// What is not flat, and that finely.
+bool EngagementScan::is_fine() const { return !is_flat() && radius_ >= kFineCells * cell_; }
+
+/// Of cells of that size, by their distance from the cutter's middle.
+void EngagementScan::weigh_cells(double cell_mm) {
+  if (cell_mm == weighed_mm_) return;
+  weighed_mm_ = cell_mm;
+  weights_.resize(kLifts + 1);
+  for (std::size_t k = 0; k <= kLifts; ++k) {
+    const double r = std::max(static_cast<double>(k) / lift_scale_, 0.25 * cell_mm);
+    const double outer = std::min(r + 0.5 * cell_mm, radius_);
+    const double inner = std::max(0.0, r - 0.5 * cell_mm), width = outer - inner;
+    const double rise = lift_of(outer) - lift_of(inner);
+    weights_[k] = {rise * cell_mm / r, width / std::hypot(width, rise)};
+  }
+}
+
+/// A cell with material over the cutter's surface. Its share of the height is what the profile
+/// rises over its width, times what of its circle it covers.
+void EngagementScan::take_cell(const Station& station, const Vec2& arm, double depth,
+                               CellFront& front) const {
+  const double cell = front.each * cell_;
+  const double r = std::max(glm::length(arm), 0.25 * cell);
+  const double ahead = glm::dot(arm, station.ahead);
+  const double beside = station.ahead.x * arm.y - station.ahead.y * arm.x;
+  const CellWeight& weight = weights_[static_cast<std::size_t>(r * lift_scale_)];
+  const double share = std::min(1.0, weight.normal * depth / kThinChip_mm) * weight.height_rad;
+  const double angle = std::atan2(beside, ahead);
+  // Near the middle a cell is seen in many directions.
+  const double spread = std::min(cell / r, kPi);
+  const int parts =
+      std::clamp(static_cast<int>(std::ceil(spread / CellFront::kStep)), 1, kMostSpread);
+  for (int n = 0; n < parts; ++n) {
+    const double at = (angle + spread * ((n + 0.5) / parts - 0.5) + kPi / 2) / CellFront::kStep;
+    const auto k = static_cast<int>(std::floor(at));
+    if (k < 0 || k >= CellFront::kSteps) continue;
+    const auto low = static_cast<std::size_t>(k);
+    front.share[low] += share / parts * (1 - (at - k));
+    front.share[low + 1] += share / parts * (at - k);
+  }
+  if (ahead < 0) return;
+  FrontContact& contact = front.at[static_cast<std::size_t>(
+      std::clamp(std::lround((angle + kPi / 2) / CellFront::kStep), 0L, long{CellFront::kSteps}))];
+  contact.inner_mm = contact.radius_mm <= 0 ? r : std::min(contact.inner_mm, r);
+  contact.radius_mm = std::max(contact.radius_mm, r);
+  // At the blank's edge heights are taken no further than they go.
+  const double above_tip =
+      std::min(depth + lift_of(r), heights_->bounds_mm().max.z - station.tip_z);
+  contact.deep_mm = std::max(contact.deep_mm, above_tip - lift_of(std::abs(beside)));
+  if (contact.deep_mm > front.deep_mm) front.deep_mm = contact.deep_mm, front.deepest = arm;
+  if (r > front.farthest_mm) front.farthest_mm = r, front.farthest = arm;
+  if (beside > front.left_mm) front.left_mm = beside, front.leftmost = arm;
+  if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
+}
+
+/// All cells before it, row by row.
+void EngagementScan::take_cells(const Station& station, CellFront& front) const {
+  const Box& box = heights_->bounds_mm();
+  const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
+  const double tip = std::max(station.tip_z, box.min.z), slope = rise_ > 0 ? rise_ / length_ : 0;
+  const double reach = engaged_ < radius_ ? engaged_ : radius_;
+  const Vec2 center = station.center - Vec2(box.min), ahead = station.ahead;
+  const double to_part = kLifts / (radius_ * radius_);
+  const auto row = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
+  const int last_j = std::min(row(center.y + reach), heights_->ny() - 1);
+  const int each = front.each;
+  for (int j = std::max(0, row(center.y - reach)); j <= last_j; j += each) {
+    const double y = (j + 0.5) * cell_y - center.y;
+    const double half2 = reach * reach - y * y;
+    if (half2 <= 0) continue;
+    double from = -std::sqrt(half2), to = -from;
+    // Ahead of its middle, or so near to its sides that a part of the cell is.
+    const double behind = -0.5 * front.each * cell_, limit = behind - ahead.y * y;
+    if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
+    if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
+    if (std::abs(ahead.x) <= 1e-9 && limit > 0) continue;
+    int first_i = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
+    first_i += (each - first_i % each + j / each % each) % each;
+    const int last_i =
+        std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
+    for (int i = first_i; i <= last_i; i += each) {
+      double height = static_cast<double>(heights_->height(i, j));
+      const double x = (i + 0.5) * cell_x - center.x, r2 = x * x + y * y;
+      // No higher than the profile somewhat farther in.
+      if (height <= tip + low_lift_[static_cast<std::size_t>(r2 * to_part)]) continue;
+      const Vec2 arm(x, y), middle = station.center + arm;
+      const double r = std::sqrt(r2), surface = tip + lift_of(r) + kThinnestFilm_mm;
+      if (height <= surface || !is_on_way(station, middle)) continue;
+      if (slope > 0 && slope_of(r) * glm::dot(arm, ahead) <= slope * r) continue;
+      height = behind_itself(middle, behind_held(middle, height));
+      if (height > surface) take_cell(station, arm, height - surface, front);
+    }
+  }
+}
+
+/// How far beyond a place in material it ends, in that direction.
+double EngagementScan::beyond(const Station& station, const Vec2& arm, const Vec2& out,
+                              int cells) const {
+  const auto depth_at = [&](double mm) {
+    const Vec2 at = arm + mm * out;
+    if (glm::dot(at, at) >= radius_ * radius_) return -1.0;
+    return over_surface(station, station.center + at) - kThinnestFilm_mm;
+  };
+  double in = 0, free = kBeyond_cells * cells * cell_;
+  if (depth_at(free) > 0) return free;
+  for (int n = 0; n < 2 + cells; ++n) {
+    const double middle = 0.5 * (in + free);
+    (depth_at(middle) > 0 ? in : free) = middle;
+  }
+  return 0.5 * (in + free);
+}
+
+/// What stands highest over what the cutter leaves: as heights end somewhere between two cells,
+/// nearer to the middle of its way than the cell is.
+double EngagementScan::deepest(const Station& station, const CellFront& front) const {
+  const Vec2 left(-station.ahead.y, station.ahead.x);
+  const double beside = glm::dot(front.deepest, left), across = front.each * cell_;
+  double deep = front.deep_mm;
+  for (int n = 1; n <= kDeepSteps; ++n) {
+    const double at = std::abs(beside) - across * n / kDeepSteps;
+    const Vec2 arm = front.deepest + (beside < 0 ? 1.0 : -1.0) * (std::abs(beside) - at) * left;
+    const double r = glm::length(arm), over = over_surface(station, station.center + arm);
+    if (at < 0 || r >= radius_ || over <= kThinnestFilm_mm) break;
+    deep = std::max(deep, over - kThinnestFilm_mm + lift_of(r) - lift_of(at));
+  }
+  return deep;
+}
+
+/// Heights at its cells are exact, so that what they add up to is exact to a part of a cell,
+/// without a question about what lies between them; walls at the rim are where the moves have left
+/// them.
+EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticlockwise) {
+  CellFront front;
+  front.each = std::max(1, static_cast<int>(radius_ / (kManyCells * cell_)));
+  weigh_cells(front.each * cell_);
+  take_cells(station, front);
+  FrontRays rays(kRays, radius_, false);
+  double left_mm = front.left_mm, right_mm = front.right_mm;
+  if (front.farthest_mm > 0) {
+    const Vec2 left(-station.ahead.y, station.ahead.x);
+    left_mm = std::min(left_mm + beyond(station, front.leftmost, left, front.each), radius_);
+    right_mm = std::max(right_mm - beyond(station, front.rightmost, -left, front.each), -radius_);
+    const Vec2 out = front.farthest / front.farthest_mm;
+    const double farthest =
+        std::min(front.farthest_mm + beyond(station, front.farthest, out, front.each), radius_);
+    const double deep = deepest(station, front);
+    for (FrontContact& contact : front.at) {
+      if (contact.radius_mm >= front.farthest_mm) contact.radius_mm = farthest;
+      if (contact.deep_mm >= front.deep_mm) contact.deep_mm = deep;
+    }
+  }
+  for (std::size_t k = 0; k <= CellFront::kSteps; ++k) {
+    FrontContact& contact = front.at[k];
+    // Half of the outermost two's directions are beyond the sides.
+    const bool is_side = k == 0 || k == CellFront::kSteps;
+    contact.high_mm = front.share[k] / (is_side ? 0.5 * CellFront::kStep : CellFront::kStep);
+    if (contact.inner_mm <= flat_radius_ + 0.5 * front.each * cell_) contact.inner_mm = 0;
+    contact.edge_mm = profile_mm(contact.radius_mm) - profile_mm(contact.inner_mm);
+  }
+  const bool meets_rim = engaged_ >= radius_ * (1 - kSameRadius);
+  const auto wall_at = [&](double angle) {
+    FrontContact wall;
+    wall.edge_mm = meets_rim ? rim_height(station, angle) : 0;
+    if (wall.edge_mm <= 0) return wall;
+    const double beside = radius_ * (1 - kSameRadius) * std::abs(std::sin(angle));
+    wall.deep_mm = wall.edge_mm + lift_[kLifts] - lift_of(beside);
+    return wall;
+  };
+  rays.take(front.at, wall_at, right_mm, left_mm);
+  return rays.look(anticlockwise);
+}
+
+}  // namespace kerf
