@@ -9,12 +9,14 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <utility>
 
+#include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "base/units.h"
@@ -23,7 +25,9 @@
 #include "interp_bridge/parameter_file.h"
 #include "interp_bridge/private_folder.h"
 #include "interp_bridge/program_kinds.h"
+#include "interp_bridge/record_cache.h"
 #include "interp_bridge/record_reader.h"
+#include "interp_bridge/record_replay.h"
 #include "interp_bridge/rs274_messages.h"
 #include "interp_bridge/source_text.h"
 #include "interp_bridge/tool_table.h"
@@ -32,6 +36,7 @@ namespace kerf {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr std::size_t kMostIniBytes = std::size_t{16} << 20;
 using Clock = std::chrono::steady_clock;
 
 /// A row as `kerf-interp --tools` takes it: machine units, all digits.
@@ -56,7 +61,8 @@ std::string makeshift_ini(const std::string& folder, bool random_toolchanger, bo
 /// Size and time of a file's contents, to see whether they changed while they were read.
 class Contents {
  public:
-  explicit Contents(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  explicit Contents(std::string path)
+      : path_(std::move(path)), fd_(open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
     known_ = fd_ >= 0 && fstat(fd_, &begin_) == 0;
   }
   Contents(const Contents&) = delete;
@@ -71,8 +77,15 @@ class Contents {
     return now.st_size != begin_.st_size || now.st_mtim.tv_sec != begin_.st_mtim.tv_sec ||
            now.st_mtim.tv_nsec != begin_.st_mtim.tv_nsec;
   }
+  /// The very file is still under its name, and has not changed.
+  bool is_still() const {
+    struct stat now {};
+    return known_ && !changed() && stat(path_.c_str(), &now) == 0 && now.st_ino == begin_.st_ino &&
+           now.st_dev == begin_.st_dev;
+  }
 
  private:
+  std::string path_;
   int fd_;
   struct stat begin_ {};
   bool known_ = false;
@@ -94,10 +107,10 @@ class BridgeProgram final : public Program {
   double progress() const override { return progress_; }
 
  private:
-  /// A child that can be listened to.
-  struct Session {
+  /// A child that can be started.
+  struct Prepared {
     PrivateFolder folder;  // first: removed after the child is gone
-    InterpreterProcess process;
+    InterpreterProcessOptions child;
   };
   /// What a run collects.
   struct Reading {
@@ -107,13 +120,18 @@ class BridgeProgram final : public Program {
     ProgramSummary& summary;
     Diagnostics& diagnostics;
   };
-  Result<Session> start_session() const;
+  Result<Prepared> prepare_child() const;
+  Done place_references(Prepared& prepared) const;
+  std::string cache_key(const Prepared& prepared) const;
+  bool can_be_kept(const RecordReader& records, ChildEnding ending, const std::string& stderr_text,
+                   const ProgramSummary& summary) const;
+  std::vector<FileRead> reads_outside(const RecordReader& records, const Prepared& prepared) const;
   Result<std::string> parameters_for(const std::string& home) const;
   Result<std::vector<std::string>> arguments(const std::string& home) const;
   std::string shown_name(const std::string& raw) const;
   void report(Severity severity, SourceRef place, std::string message, std::string hint,
               const Reading& reading) const;
-  void report_ending(ChildEnding ending, Session& session, const Reading& reading) const;
+  void report_ending(ChildEnding ending, InterpreterProcess* process, const Reading& reading) const;
   void report_exit(InterpreterProcess::Exit exit, const Reading& reading) const;
   void report_fault(const InterpreterFault& fault, const Reading& reading) const;
 
@@ -148,16 +166,7 @@ bool probes_from_reference(const std::string& path) {
 Result<std::string> BridgeProgram::parameters_for(const std::string& home) const {
   const InterpreterSetup& machine = options_.machine;
   std::string path = home + "/parameters";
-  if (machine.parameter_path.empty() && !machine.work_offset) {
-    if (!probes_from_reference(options_.path)) return home + "/none/parameters";
-    constexpr double kAway_mm = 1;
-    const double away = kAway_mm / mm_of_unit(machine.inch_machine);
-    ParameterFile references;
-    for (const int z : {5163, 5183}) references.values[z] = away;
-    std::ofstream file(path);
-    if (file << references.text() << std::flush) return path;
-    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
-  }
+  if (machine.parameter_path.empty() && !machine.work_offset) return home + "/none/parameters";
   if (!machine.work_offset) {
     std::error_code error;
     fs::copy_file(machine.parameter_path, path, error);
@@ -172,6 +181,26 @@ Result<std::string> BridgeProgram::parameters_for(const std::string& home) const
   std::ofstream file(path);
   if (file << values->text() << std::flush) return path;
   return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
+}
+
+/// Places for G28 and G30 where nobody has said any. It hangs on the program's text alone, which
+/// takes time to look through; records that are kept do not need it.
+Done BridgeProgram::place_references(Prepared& prepared) const {
+  const InterpreterSetup& machine = options_.machine;
+  if (!machine.parameter_path.empty() || machine.work_offset) return std::monostate{};
+  if (!probes_from_reference(options_.path)) return std::monostate{};
+  constexpr double kAway_mm = 1;
+  const double away = kAway_mm / mm_of_unit(machine.inch_machine);
+  ParameterFile references;
+  for (const int z : {5163, 5183}) references.values[z] = away;
+  const std::string path = prepared.child.home + "/parameters";
+  std::ofstream file(path);
+  if (!(file << references.text() << std::flush)) {
+    return Error{trf("cannot write {}: {}", path, std::strerror(errno))};
+  }
+  std::vector<std::string>& arguments = prepared.child.arguments;
+  *(std::find(arguments.begin(), arguments.end(), "--parameters") + 1) = path;
+  return std::monostate{};
 }
 
 Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& home) const {
@@ -205,6 +234,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   if (machine.there) {
     out.insert(out.end(), {"--there", fmt::format("{}", fmt::join(*machine.there, " "))});
   }
+  if (!options_.interp_fast) out.insert(out.end(), {"--fast", "off"});
   if (answer_probe_) out.insert(out.end(), {"--answers", std::to_string(kAnswerFd)});
   if (machine.random_toolchanger) out.emplace_back("--random-toolchanger");
   if (!machine.tool_change_position.empty()) {
@@ -218,7 +248,7 @@ Result<std::vector<std::string>> BridgeProgram::arguments(const std::string& hom
   return out;
 }
 
-Result<BridgeProgram::Session> BridgeProgram::start_session() const {
+Result<BridgeProgram::Prepared> BridgeProgram::prepare_child() const {
   auto folder = PrivateFolder::create();
   if (!folder) return Error{folder.error()};
   const std::string home = folder->path() + "/home";
@@ -249,9 +279,58 @@ Result<BridgeProgram::Session> BridgeProgram::start_session() const {
       return Error{trf("cannot write {}: {}", child.ini, std::strerror(errno))};
     }
   }
-  auto process = InterpreterProcess::start(child);
-  if (!process) return Error{process.error()};
-  return Session{std::move(*folder), std::move(*process)};
+  return Prepared{std::move(*folder), std::move(child)};
+}
+
+/// All that the records hang on, but for what the interpreter itself finds and reads. Empty: they
+/// are not to be kept.
+std::string BridgeProgram::cache_key(const Prepared& prepared) const {
+  if (options_.cache_folder.empty()) return {};
+  const InterpreterProcessOptions& child = prepared.child;
+  const std::optional<FileContents> program = contents_of(options_.path);
+  const Result<std::string> ini = read_small_file(child.ini, kMostIniBytes);
+  // What Python does for a remap is its own affair.
+  if (!program || !ini || to_lower(*ini).find("[python]") != ini->npos) return {};
+  std::string key;
+  const auto add = [&key](std::string_view part) {
+    key += fmt::format("{}:{}\n", part.size(), part);
+  };
+  add(fmt::format("{} {:016x}{:016x}", program->size, program->hash[0], program->hash[1]));
+  add(child.executable);
+  add(fs::current_path().string());
+  add(child.folder);
+  add(child.ini.starts_with(child.home) ? "" : child.ini);
+  add(*ini);
+  // The private folder has another name in each run; what is in it counts.
+  for (const std::string& argument : child.arguments) {
+    add(argument.starts_with(child.home) ? argument.substr(child.home.size()) : argument);
+  }
+  for (const char* name : {"/tools", "/torch", "/parameters"}) {
+    const Result<std::string> text = read_small_file(child.home + name, kMostIniBytes);
+    add(text ? *text : "");
+  }
+  for (const char* name : {"LD_LIBRARY_PATH", "LD_PRELOAD", "PYTHONPATH", "PYTHONHOME", "PATH"}) {
+    const char* const value = std::getenv(name);
+    add(value != nullptr ? value : "");
+  }
+  return key;
+}
+
+bool BridgeProgram::can_be_kept(const RecordReader& records, ChildEnding ending,
+                                const std::string& stderr_text,
+                                const ProgramSummary& summary) const {
+  return ending == ChildEnding::kComplete && records.damage().empty() && records.can_be_kept() &&
+         stderr_text.empty() && summary.foreign_line_count == 0;
+}
+
+std::vector<FileRead> BridgeProgram::reads_outside(const RecordReader& records,
+                                                   const Prepared& prepared) const {
+  std::vector<FileRead> out;
+  const std::string program = fs::absolute(options_.path).string();
+  for (const FileRead& read : records.reads()) {
+    if (read.path != program && !read.path.starts_with(prepared.child.home)) out.push_back(read);
+  }
+  return out;
 }
 
 /// A file as the user would name it: relative to where kerf was started, if it is beneath.
@@ -348,12 +427,15 @@ void BridgeProgram::report_exit(InterpreterProcess::Exit exit, const Reading& re
   }
 }
 
-void BridgeProgram::report_ending(ChildEnding ending, Session& session,
+void BridgeProgram::report_ending(ChildEnding ending, InterpreterProcess* process,
                                   const Reading& reading) const {
+  const auto end_it = [process] {
+    if (process != nullptr) process->kill();
+  };
   const RecordReader& records = reading.records;
   reading.summary.stopped_early = ending != ChildEnding::kComplete;
   if (!records.damage().empty()) {
-    session.process.kill();
+    end_it();
     report(Severity::kError, records.place(),
            trf("the records of {} cannot be read: {}", kerf_interp_, records.damage()),
            tr("kerf and kerf-interp must be of one version"), reading);
@@ -362,7 +444,7 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
   constexpr const char* kLoop = tr_noop("a loop whose condition stays true?");
   switch (ending) {
     case ChildEnding::kComplete:
-      report_exit(session.process.wait(), reading);
+      report_exit(process != nullptr ? process->wait() : InterpreterProcess::Exit{}, reading);
       break;
     case ChildEnding::kStopped:
       break;
@@ -373,19 +455,19 @@ void BridgeProgram::report_ending(ChildEnding ending, Session& session,
              tr(kLoop), reading);
       break;
     case ChildEnding::kSilent:
-      session.process.kill();
+      end_it();
       report(Severity::kError, records.place(),
              trf("no motion or other command for {} s; the program counts as endless",
                  options_.max_silent_s),
              std::string(tr("the interpreter is here; ")) + tr(kLoop), reading);
       break;
     case ChildEnding::kRepeating:
-      session.process.kill();
+      end_it();
       report(Severity::kError, records.place(), repeat_message(reading.feeder.repeats()),
              std::string(tr(kLoop)) + tr(" --max-seconds allows more"), reading);
       break;
     case ChildEnding::kTooLong:
-      session.process.kill();
+      end_it();
       report(Severity::kError, records.place(), cpu_message(options_), {}, reading);
       break;
   }
@@ -402,13 +484,29 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   ToolDiameters diameters;
   tools_ = with_known_diameters(std::move(tools_), !options_.tool_table_path.empty(),
                                 known_tools_.diameters, diameters);
-  auto session = start_session();
-  if (!session) {
+  const auto cannot_begin = [&](const std::string& why) {
     Diagnostic diagnostic;
     diagnostic.file = options_.path;
-    diagnostic.message = session.error();
+    diagnostic.message = why;
     diagnostics.push_back(std::move(diagnostic));
     return summary;
+  };
+  auto prepared = prepare_child();
+  if (!prepared) return cannot_begin(prepared.error());
+  const RecordCache cache(options_.cache_folder, options_.cache_bytes);
+  const std::string key = cache_key(*prepared);
+  std::optional<CachedRecords> cached;
+  if (!key.empty()) cached = cache.find(key);
+  std::optional<RecordStore> store;
+  if (!key.empty() && !cached) store = cache.begin(key);
+  std::optional<InterpreterProcess> process;
+  if (!cached) {
+    if (const Done placed = place_references(*prepared); !placed) {
+      return cannot_begin(placed.error());
+    }
+    auto started = InterpreterProcess::start(prepared->child);
+    if (!started) return cannot_begin(started.error());
+    process.emplace(std::move(*started));
   }
   const MotionSink named_sink = [&](std::span<const Motion> motions) {
     if (files_.size() != summary.files.size()) files_ = summary.files;
@@ -442,21 +540,33 @@ ProgramSummary BridgeProgram::run(const MotionSink& sink, std::stop_token stop,
   RecordReader records(
       feeder, [&](const std::string& raw) { return shown_name(raw); }, summary);
   if (answer_probe_) {
-    records.answer_by([&session](const records::Answer& answer) {
-      return session->process.answer(&answer, sizeof answer);
+    records.answer_by([&process](const records::Answer& answer) {
+      return process && process->answer(&answer, sizeof answer);
     });
   }
-  ChildListener listener(session->process, records, feeder, options_);
   const double lines = static_cast<double>(std::max<std::size_t>(1, survey_.lines));
-  const ChildEnding ending = listener.listen(stop, [&] {
+  const auto on_progress = [&] {
     const SourceRef place = records.place();
     if (place.file == 0) progress_ = std::min(1.0, static_cast<double>(place.line) / lines);
-  });
+  };
+  std::string stderr_text;
+  ChildEnding ending{};
+  if (cached) {
+    ending = replay(*cached, records, feeder, stop, on_progress);
+  } else {
+    KeepingReader keeping(records, store);
+    ChildListener listener(*process, keeping, feeder, options_);
+    ending = listener.listen(stop, on_progress);
+    stderr_text = listener.stderr_text();
+  }
   feeder.finish();
   if (summary.files.empty()) summary.files.push_back(options_.path);  // it never spoke
   files_ = summary.files;
-  const Reading reading{records, feeder, listener.stderr_text(), summary, diagnostics};
-  report_ending(ending, *session, reading);
+  const Reading reading{records, feeder, stderr_text, summary, diagnostics};
+  report_ending(ending, process ? &*process : nullptr, reading);
+  if (store && can_be_kept(records, ending, stderr_text, summary) && contents.is_still()) {
+    store->commit(reads_outside(records, *prepared));
+  }
   if (contents.changed()) {
     report(Severity::kError, {0, 0},
            tr("the program was changed while it was read: this result is that of no program"),

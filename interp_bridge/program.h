@@ -163,6 +163,12 @@ struct ProgramOptions {
   std::string rs274_path = "rs274";  ///< looked up in PATH
   /// Empty: beside this executable, in ../lib/kerf beside it, else looked up in PATH.
   std::string kerf_interp_path;
+  /// kerf-interp reads plain numbers without LinuxCNC's own stream: the same bits, sooner.
+  bool interp_fast = true;
+  /// Records of programs that were interpreted before (record_cache.h). Empty: none are looked for,
+  /// none are kept. kerf-interp only.
+  std::string cache_folder;
+  std::uint64_t cache_bytes = std::uint64_t{512} << 20;
   /// Canonical commands after which a program counts as endless; 0: any number. Not given: 50
   /// million, and for longer programs 4 a line.
   std::optional<std::uint64_t> max_commands;

@@ -42,10 +42,13 @@ enum Code : std::uint8_t {
   kHere = 0x7c,    ///< the STRAIGHT_TRAVERSE that follows is no move: there the machine stands
   kMode = 0x7d,    ///< with --first-line, before kHere: a ModeGroup, what it began with, what it is
                    ///< now; `line` of the program has made it so, 0: it began so
+  kRead = 0x7e,    ///< text: the interpreter has opened this file (`line` 1), or looked for it in
+                   ///< vain (0); all of them right before kEnd, with the programs that run
+  kHidden = 0x7f,  ///< it has looked where nobody can tell what it saw: the next time may differ
   kEnd = 0x79,     ///< the last record: 1 if the program ended by M2, M30 or %; blocks read
 };
 constexpr bool is_text(std::uint8_t code) {
-  return code >= kText || code == kFile || code == kError || code == kEcho;
+  return code >= kText || code == kFile || code == kError || code == kEcho || code == kRead;
 }
 
 /// What kerf writes back for each kProbe.

@@ -122,6 +122,7 @@ bool RecordReader::take(const records::Head& head, const char* payload) {
 bool RecordReader::take_command(const records::Head& head, const char* payload) {
   place_ = {file_, head.line};
   command_.name = static_cast<CanonicalName>(head.code & 0x7f);
+  varies_ = varies_ || command_.name == CanonicalName::kStraightProbe;
   command_.argument_count = 0;
   command_.text = {};
   if (records::is_text(head.code) != carries_text(command_.name)) {
@@ -152,7 +153,15 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
       return take_file(head, {payload, head.count});
     case records::kSpline:
       return take_spline(head, payload);
+    case records::kRead:
+      if (reads_.size() >= kMaxFiles) return refuse(tr("too many files"));
+      reads_.push_back({std::string(payload, head.count), head.line != 0});
+      return true;
+    case records::kHidden:
+      varies_ = true;
+      return true;
     case records::kUserM:
+      varies_ = true;
       if (head.count != 3) return refuse(tr("a user M-code whose numbers do not fit"));
       feeder_.take_wait();
       if (number_at(payload, 0) == kMaterialCode &&
@@ -215,6 +224,7 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
     }
     case records::kEnd:
       ended_ = true;
+      came_to_end_ = head.count > 0 && number_at(payload, 0) == 1;
       return true;
     default:
       return refuse(tr("a record of unknown kind"));
@@ -260,6 +270,7 @@ bool RecordReader::take_spline(const records::Head& head, const char* payload) {
 bool RecordReader::take_probe(const records::Head& head, const char* payload) {
   constexpr std::uint16_t kNumbers = 10;
   if (!give_answer_ || head.count != kNumbers) return refuse(tr("a question that nobody expects"));
+  varies_ = true;
   place_ = {file_, head.line};
   const double kind = number_at(payload, 0);
   command_.name = CanonicalName::kStraightProbe;

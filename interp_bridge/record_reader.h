@@ -12,6 +12,7 @@
 #include "interp_bridge/canonical.h"
 #include "interp_bridge/child_listener.h"
 #include "interp_bridge/motion_feeder.h"
+#include "interp_bridge/record_cache.h"
 #include "interp_bridge/record_format.h"
 
 namespace kerf {
@@ -48,6 +49,12 @@ class RecordReader final : public ByteReader {
   const std::string& damage() const { return damage_; }
   bool ended() const { return ended_; }  ///< the last record has come
   const std::vector<InterpreterFault>& faults() const { return faults_; }
+  /// What the interpreter has read besides its options, once the last record has come.
+  const std::vector<FileRead>& reads() const { return reads_; }
+  /// The program came to its end, and would give the same records again while what it has read does
+  /// not change: it has not probed, has called no user M-code, has not looked where nobody can tell
+  /// what it saw.
+  bool can_be_kept() const { return ended_ && came_to_end_ && !varies_ && faults_.empty(); }
   /// Where the interpreter was last heard of.
   SourceRef place() const { return place_; }
 
@@ -74,6 +81,9 @@ class RecordReader final : public ByteReader {
   CanonicalCommand command_;
   std::vector<Spline::Point> points_;
   std::vector<InterpreterFault> faults_;
+  std::vector<FileRead> reads_;
+  bool came_to_end_ = false;
+  bool varies_ = false;
   std::uint32_t file_ = 0;
   SourceRef place_;
 };

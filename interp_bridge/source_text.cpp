@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/newline_count.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 #include "interp_bridge/canonical.h"
@@ -157,7 +158,7 @@ void TextSurveyor::add_lines(std::string_view text) {
   }
   if (text.empty()) return;
   if (!survey_.listing) add_later_lines(text);
-  survey_.lines += static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  survey_.lines += newline_count(text);
   if (text.back() != '\n') ++survey_.lines;
 }
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/newline_count.h"
 #include "base/text_scan.h"
 #include "interp_bridge/torch_setup.h"
 
@@ -42,8 +43,7 @@ bool begins_line(std::string_view text, std::size_t at) {
 }
 
 std::uint32_t lines_before(std::string_view text, std::size_t from, std::size_t at) {
-  const auto part = text.substr(from, at - from);
-  return static_cast<std::uint32_t>(std::count(part.begin(), part.end(), '\n'));
+  return static_cast<std::uint32_t>(newline_count(text.substr(from, at - from)));
 }
 
 }  // namespace

@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "interp_bridge/canonical.h"
+#include "interp_bridge/kerf_interp/fast_numbers.h"
 #include "interp_bridge/kerf_interp/mode_watch.h"
 #include "interp_bridge/kerf_interp/options.h"
+#include "interp_bridge/kerf_interp/reads.h"
 #include "interp_bridge/kerf_interp/recording.h"
 
 // ---- What librs274 expects of whoever links it
@@ -241,8 +243,15 @@ int run(int argc, char** argv) {
   recording().answers_fd = options.answers_fd;
   recording().begin(options.program);
   recording().interpreter = interpreter;
+  if (options.fast != Options::Fast::kOff && !use_fast_numbers(*interpreter) &&
+      options.fast == Options::Fast::kMust) {
+    std::fputs("kerf-interp: --fast must: this LinuxCNC is not one whose numbers it can read\n",
+               stderr);
+    return 2;
+  }
   Runner runner(*interpreter, records);
   const bool ended = runner.run(options);
+  write_reads(records);
   records.numbers(records::kEnd, 0, {ended ? 1.0 : 0.0, static_cast<double>(runner.blocks())});
   records.flush();
   std::fflush(nullptr);

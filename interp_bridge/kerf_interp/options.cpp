@@ -37,6 +37,8 @@ constexpr const char* kUsage =
     "and\n"
     "                          degrees (where the program would be)\n"
     "  --answers FD            asks where probing moves end, and reads the answers there\n"
+    "  --fast on|off|must      plain numbers are read without LinuxCNC's own stream (on);\n"
+    "                          must: or nothing is read\n"
     "  --torch FILE            QtPlasmaC's materials and the values of pins (README.md)\n";
 
 /// With the endings that the interpreter puts behind it (".new", ".bak") less than its 256.
@@ -145,7 +147,8 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
     kTorch,
     kAnswers,
     kFirstLine,
-    kThere
+    kThere,
+    kFast
   };
   static const option kOptions[] = {{"records", required_argument, nullptr, kRecords},
                                     {"units", required_argument, nullptr, kUnits},
@@ -161,6 +164,7 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
                                     {"answers", required_argument, nullptr, kAnswers},
                                     {"first-line", required_argument, nullptr, kFirstLine},
                                     {"there", required_argument, nullptr, kThere},
+                                    {"fast", required_argument, nullptr, kFast},
                                     {nullptr, 0, nullptr, 0}};
   long number = 0;
   for (int code; (code = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -220,6 +224,14 @@ bool read_options(int argc, char** argv, Options& options, World& world) {
         break;
       case kThere:
         if (!read_pose(value, "--there", options.there.emplace())) return false;
+        break;
+      case kFast:
+        if (value != "on" && value != "off" && value != "must") {
+          return fault("--fast: on, off or must");
+        }
+        options.fast = value == "on"    ? Options::Fast::kOn
+                       : value == "off" ? Options::Fast::kOff
+                                        : Options::Fast::kMust;
         break;
       default:
         std::fputs(kUsage, stderr);

@@ -16,6 +16,8 @@ struct Options {
   /// --there, workpiece coordinates, mm and degrees. Nothing: where the program is by then.
   std::optional<Pose> there;
   int records_fd = 3;
+  /// --fast: plain numbers without a stream (fast_numbers.h), where that can be; kMust: or nothing.
+  enum class Fast { kOn, kOff, kMust } fast = Fast::kOn;
 };
 
 /// Fills `options` and what it says about the machine. False: a fault, which has been printed.

@@ -5,6 +5,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <string>
+
+#include "base/newline_count.h"
 
 namespace kerf {
 namespace {
@@ -113,6 +116,21 @@ TEST(TextScan, WhatAMessageShows) {
   EXPECT_EQ(shown("a\x01\x7f"), "a??");
   EXPECT_EQ(shown(std::string(60, 'x')), std::string(60, 'x'));
   EXPECT_EQ(shown(std::string(61, 'x')), std::string(60, 'x') + "...");
+}
+
+TEST(TextScan, NewlinesAreCountedAtAnyLength) {
+  std::string text;
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < 9000; ++i) {
+    if (i % 61 == 0 || i < 700) {
+      EXPECT_EQ(newline_count(text), expected) << i;
+    }
+    // Runs of them, too, and what differs from them in one bit.
+    const bool newline = i % 7 == 0 || (i > 4000 && i < 8500);
+    text += newline ? '\n' : i % 3 == 0 ? '\x8a' : '\x0b';
+    expected += newline ? 1 : 0;
+  }
+  EXPECT_EQ(newline_count(text), expected);
 }
 
 }  // namespace

@@ -126,9 +126,10 @@ const std::array kFolderRules{
 };
 
 struct LibraryRule {
-  std::string_view header;  ///< a header, or a folder of headers if it ends in '/'
-  std::string_view folder;  ///< that may include it
-  std::string_view also{};  ///< another one; the only two
+  std::string_view header;   ///< a header, or a folder of headers if it ends in '/'
+  std::string_view folder;   ///< that may include it
+  std::string_view also{};   ///< another one
+  std::string_view third{};  ///< and another; the only three
 };
 
 constexpr std::array kLibraryRules{
@@ -138,7 +139,7 @@ constexpr std::array kLibraryRules{
     LibraryRule{"zip.h", "base/"},
     LibraryRule{"expat.h", "mesh/", "machine_io/mtconnect/"},
     LibraryRule{"curl/", "machine_io/mtconnect/"},
-    LibraryRule{"xxhash.h", "stock/", "twin/batch/"},
+    LibraryRule{"xxhash.h", "stock/", "twin/batch/", "interp_bridge/"},
     LibraryRule{"polyclipping/", "stock/plane/"},
     LibraryRule{"clipper.hpp", "stock/plane/"},
     LibraryRule{"STEPControl_Reader.hxx", "mesh/kerf_step/"},
@@ -259,9 +260,11 @@ std::string check_library_include(std::string_view path, std::string_view target
     const bool matches =
         rule.header.ends_with('/') ? target.starts_with(rule.header) : target == rule.header;
     const bool in_also = !rule.also.empty() && path.starts_with(rule.also);
-    if (matches && !path.starts_with(rule.folder) && !in_also) {
-      return fmt::format("<{}> appears only in {}{}{}", target, rule.folder,
-                         rule.also.empty() ? "" : " and ", rule.also);
+    const bool in_third = !rule.third.empty() && path.starts_with(rule.third);
+    if (matches && !path.starts_with(rule.folder) && !in_also && !in_third) {
+      return fmt::format("<{}> appears only in {}{}{}{}{}", target, rule.folder,
+                         rule.also.empty() ? "" : " and ", rule.also,
+                         rule.third.empty() ? "" : " and ", rule.third);
     }
   }
   return "";

@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::size_t kMostJobBytes = 1U << 20U;
 /// What a command line says for all setups.
-constexpr const char* kForAll[] = {"--threads", "--interp"};
+constexpr const char* kForAll[] = {"--threads", "--interp", "--interp-fast", "--interp-cache",
+                                   "--interp-cache-size"};
 
 /// Whether the program of the next setup is for a lathe, by what is known before it is run.
 bool is_for_lathe(const RunRequest& request) {

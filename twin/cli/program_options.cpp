@@ -10,6 +10,7 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "interp_bridge/record_cache.h"
 #include "twin/config/setting_table.h"
 #include "twin/machine/kinematics/kinematics_setup.h"
 #include "twin/machine/machine_setup.h"
@@ -127,6 +128,10 @@ ProgramRequest understand_program(std::string_view program, const ProgramSurroun
   reader.word("--interp", {InterpreterChoice::kBridge, InterpreterChoice::kText},
               options.interpreter);
   options.block_delete = reader.on_off("--block-delete");
+  options.interp_fast = reader.on_off("--interp-fast");
+  if (reader.on_off("--interp-cache")) options.cache_folder = record_cache_folder();
+  options.cache_bytes = static_cast<std::uint64_t>(reader.whole_number("--interp-cache-size"))
+                        << 20;
   if (reader.choose("--max-commands").is_said()) {
     options.max_commands = static_cast<std::uint64_t>(reader.whole_number("--max-commands"));
   }
