@@ -531,7 +531,9 @@ TEST_F(ViewWindow, AChangedProgramIsReadAgainWhereItStood) {
 
 TEST_F(ViewWindow, AProgramThatIsBrokenMeanwhileStaysAsItWasUntilItIsMended) {
   open({"view", program_, "--tool-table", folder_.write("tool.tbl", "T1 P1 D6\nT2 P2 D5\n")});
+  const Picture start = kerf_->settled();
   kerf_->key("End");
+  ASSERT_TRUE(kerf_->changes_from(start));
   const Picture before = kerf_->settled();
   std::remove(program_.c_str());
   folder_.write("tool.tbl", "T1 P1 Dsix\n");
