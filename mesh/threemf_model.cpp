@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/expat_line.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 
@@ -20,15 +21,6 @@ constexpr std::pair<std::string_view, double> kUnits[] = {{"micron", 0.001},  {"
                                                           {"foot", 304.8},    {"meter", 1000}};
 /// Extensions that leave the meshes as they are.
 constexpr std::string_view kUnderstood[] = {"/production/", "/material/", "/trianglesets/"};
-
-/// Before 2.9 expat counts lines by a type that it warns of since.
-auto parser_line(XML_Parser parser) {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
-  return XML_GetCurrentLineNumber64(parser);
-#else
-  return XML_GetCurrentLineNumber(parser);
-#endif
-}
 
 /// A name without the prefix of its namespace.
 std::string_view bare(std::string_view name) {
@@ -80,7 +72,7 @@ struct ThreemfReader::State {
 
   void fail(const std::string& text) {
     if (!fault.empty()) return;
-    fault = fmt::format("{}:{}: {}", name, parser_line(parser), text);
+    fault = fmt::format("{}:{}: {}", name, expat_line(parser), text);
     XML_StopParser(parser, XML_FALSE);
   }
 

@@ -4,20 +4,12 @@
 
 #include <memory>
 
+#include "base/expat_line.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
 
 namespace kerf {
 namespace {
-
-/// Before 2.9 expat counts lines by a type that it warns of since.
-auto parser_line(XML_Parser parser) {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
-  return XML_GetCurrentLineNumber64(parser);
-#else
-  return XML_GetCurrentLineNumber(parser);
-#endif
-}
 
 std::string_view without_prefix(std::string_view name) {
   const std::size_t colon = name.rfind(':');
@@ -57,7 +49,7 @@ class XmlBuilder {
  private:
   void fail(std::string_view what) {
     if (!fault_.empty()) return;
-    fault_ = trf("line {}: {}", parser_line(parser_), what);
+    fault_ = trf("line {}: {}", expat_line(parser_), what);
     XML_StopParser(parser_, XML_FALSE);
   }
 

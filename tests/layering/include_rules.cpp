@@ -137,7 +137,7 @@ constexpr std::array kLibraryRules{
     LibraryRule{"CLI/", "twin/cli/"},
     LibraryRule{"nlohmann/", "twin/"},
     LibraryRule{"zip.h", "base/"},
-    LibraryRule{"expat.h", "mesh/", "machine_io/mtconnect/"},
+    LibraryRule{"expat.h", "mesh/", "machine_io/mtconnect/", "base/expat_line.h"},
     LibraryRule{"curl/", "machine_io/mtconnect/"},
     LibraryRule{"xxhash.h", "stock/", "twin/batch/", "interp_bridge/"},
     LibraryRule{"polyclipping/", "stock/plane/"},

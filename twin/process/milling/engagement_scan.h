@@ -76,7 +76,8 @@ class EngagementScan {
     /// moves; or null: walls are known to a cell.
     const PresentHeights* owners = nullptr;
     const PastWays* ways = nullptr;
-    bool is_brief = false;  ///< of what is not flat, by its cells: where there is no time
+    /// Of what is not flat, by its cells, or (where these are coarse) by a third of the radii.
+    bool is_brief = false;
   };
   /// What the cutter's side has in it where it is at that part of its way, by a ring of looks ahead
   /// of it. At its rim walls are where the moves that made them have left them, and the sides of a
