@@ -1,7 +1,11 @@
 #include "interp_bridge/rs274_messages.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
@@ -66,7 +70,45 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
-std::string hint_for(const std::string& message) {
+/// A block has a G code, outside of its comments: "G0 G91 G28 Z0" has G28.
+bool has_g_code(std::string_view block, int code) {
+  bool in_comment = false;
+  for (std::size_t i = 0; i < block.size() && (in_comment || block[i] != ';'); ++i) {
+    if (block[i] == '(' || block[i] == ')') in_comment = block[i] == '(';
+    if (in_comment || (block[i] != 'G' && block[i] != 'g')) continue;
+    const std::size_t first = block.find_first_not_of(" \t", i + 1);
+    if (first == block.npos) return false;
+    int found = -1;
+    const char* const end = block.data() + block.size();
+    const auto [next, error] = std::from_chars(block.data() + first, end, found);
+    if (error == std::errc() && found == code && (next == end || *next != '.')) return true;
+  }
+  return false;
+}
+
+/// "start=(X-40.0000,Y50.0000) center=(X-80.0000,Y90.0000) end=(X-30.0000,Y40.0000)": with the
+/// centre's words taken as a place (G90.1) both ends are as far from it.
+bool fits_absolute_centre(const std::string& message) {
+  const auto pair = [&](const char* name, std::array<double, 2>& out) {
+    const std::size_t at = message.find(name);
+    char first = 0, second = 0;
+    return at != message.npos &&
+           std::sscanf(message.c_str() + at + std::strlen(name), "%c%lf,%c%lf)", &first, &out[0],
+                       &second, &out[1]) == 4;
+  };
+  std::array<double, 2> start{}, center{}, end{};
+  if (!pair("start=(", start) || !pair("center=(", center) || !pair("end=(", end)) return false;
+  const std::array<double, 2> place{center[0] - start[0], center[1] - start[1]};
+  const auto distance = [&](const std::array<double, 2>& from) {
+    const double x = from[0] - place[0], y = from[1] - place[1];
+    return std::sqrt(x * x + y * y);
+  };
+  // As exact as LinuxCNC itself asks for.
+  const double from_start = distance(start);
+  return std::abs(from_start - distance(end)) < 0.001 * from_start + 0.0005;
+}
+
+std::string hint_for(const std::string& message, std::string_view block) {
   const auto has = [&](const char* part) { return message.find(part) != message.npos; };
   if (has("seeking o-word")) {
     return tr("a subroutine that the program calls must be in it, or in NAME.ngc beside it");
@@ -90,6 +132,19 @@ std::string hint_for(const std::string& message) {
     return tr(
         "where the machine stands then (G28, G30, G53, or at the start) is not known; an INI "
         "says it (--ini)");
+  }
+  if (has("Cannot use two g codes that both use axis values") &&
+      (has_g_code(block, 28) || has_g_code(block, 30)) &&
+      (has_g_code(block, 0) || has_g_code(block, 1))) {
+    return tr("G28 and G30 traverse by themselves: no G0 or G1 in their block");
+  }
+  if (has("Radius to end of arc differs") && fits_absolute_centre(message)) {
+    return tr("as a place, and not from the arc's start, the centre fits: G90.1 says so");
+  }
+  if (has("K word given for arc in xy plane")) return tr("an arc of X and Z lies in G18");
+  if (has("P word with no") && (has_g_code(block, 73) || has_g_code(block, 81) ||
+                                has_g_code(block, 83) || has_g_code(block, 85))) {
+    return tr("LinuxCNC dwells at the bottom of G82, G86, G88 and G89 only: no P here");
   }
   if (has("not found in the tool table")) return tr("give the machine's table with --tool-table");
   return {};
@@ -174,7 +229,7 @@ Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
     diagnostic.line = static_cast<int>(place.line);
     diagnostic.excerpt = line_of_file(diagnostic.file, place.line);
   }
-  diagnostic.hint = hint_for(message);
+  diagnostic.hint = hint_for(message, diagnostic.excerpt);
   return diagnostic;
 }
 

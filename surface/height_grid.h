@@ -92,6 +92,24 @@ class HeightGrid {
     return std::max(floor_mm(), tile(i / kTileCells, j / kTileCells)[offset(i, j)]);
   }
 
+  /// A row of cells, whose share of what says where a cell lies is worked out once.
+  class Row {
+   public:
+    Row(const HeightGrid& grid, int j)
+        : tiles_(&grid.tiles_[static_cast<std::size_t>(j / kTileCells * grid.tiles_x_)]),
+          first_(offset(0, j)) {}
+    /// As it is kept: of a cell without material it may be below the floor.
+    float kept(int i) const {
+      const auto x = static_cast<unsigned>(i);
+      return tiles_[x / kTileCells]
+                   [first_ + x % kTileCells / kBlockX * (kBlockX * kBlockY) + x % kBlockX];
+    }
+
+   private:
+    const float* const* tiles_;
+    std::size_t first_;
+  };
+
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
     const int x = i % kTileCells, y = j % kTileCells;

@@ -412,9 +412,10 @@ struct ViewedJob {
   std::string stock, cell, model;     ///< As given; empty: chosen by itself.
   LengthUnit unit = LengthUnit::kMm;  ///< Of the lengths in all of these.
   std::string stock_in_use, cell_in_use, model_in_use;
-  std::vector<JobTool> tools;       ///< By number.
-  std::vector<std::string> models;  ///< That can be given.
-  std::string command;              ///< The equal command line.
+  std::vector<JobTool> tools;         ///< By number.
+  std::vector<std::string> fixtures;  ///< As given.
+  std::vector<std::string> models;    ///< That can be given.
+  std::string command;                ///< The equal command line.
   /// Why what was asked for last is not shown; empty: it is.
   std::vector<std::string> faults;
   bool is_fixed = false;   ///< A log or a machine: the command is there, the fields are not.

@@ -89,6 +89,7 @@ struct OpenCommand {
 struct JobCommand {
   std::string stock, cell, model;
   std::vector<std::pair<int, std::string>> tools;  ///< number and SHAPE text, those that are given
+  std::vector<std::string> fixtures{};             ///< those that are given
 };
 /// Another setup of the part: ViewedJob::setups. To a later one, what those before it leave is cut
 /// first.

@@ -16,6 +16,9 @@ constexpr std::size_t kMostHints = 10000;
 /// A drill's point: what is blunter than this is no chamfer and no taper, whatever language names
 /// it.
 constexpr double kLeastDrillAngle_deg = 100;
+/// CamBam wants a diameter of every tool, and who has none to give says 0 or a thousandth of an
+/// inch.
+constexpr double kPlaceholder_mm = 0.03;
 
 /// "KEY=number": value after the first such key that stands by itself.
 std::optional<double> field(std::string_view lower, std::string_view key) {
@@ -112,7 +115,8 @@ class HintFinder {
     const std::optional<double> bare = parse_decimal(numbered->rest);
     if (bare && numbered->separator == ':') {
       CutterFacts facts;
-      facts.diameter_mm = *bare * unit_mm();
+      const double diameter_mm = *bare * unit_mm();
+      facts.diameter_mm = diameter_mm < kPlaceholder_mm ? 0 : diameter_mm;
       add(numbered->tool, "cambam", facts);
       return true;
     }

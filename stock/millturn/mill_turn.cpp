@@ -66,6 +66,7 @@ Result<std::unique_ptr<Octree>> MillTurn::box_tree() const {
   options.blank.bodies.push_back(box);
   options.cell_mm = options_.cell_mm;
   options.threads = options_.threads;
+  options.kernel = options_.kernel;
   options.memory_limit_bytes = options_.memory_limit_bytes;
   return Octree::create(options);
 }
@@ -218,7 +219,8 @@ std::unique_ptr<Octree> MillTurn::as_octree() const {
 Result<std::unique_ptr<MillTurn>> MillTurn::load(const std::string& path,
                                                  const MillTurnOptions& options) {
   std::string beside;
-  Result<std::unique_ptr<Octree>> tree = Octree::load_with(path, options.threads, beside);
+  Result<std::unique_ptr<Octree>> tree =
+      Octree::load_with(path, options.threads, options.kernel, beside);
   if (!tree) return Error{tree.error()};
   if (beside.empty()) {
     return Error{trf("{}: nothing in it says how it was turned: a mill has saved it", path)};

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "stock/octree/kernel_choice.h"
 #include "stock/octree/octree.h"
 #include "stock/turning/turning_stock.h"
 #include "stock/way_contact.h"
@@ -19,6 +20,7 @@ struct MillTurnOptions {
   double cell_mm = 0.1;  ///< of what is milled: OctreeOptions
   int threads = 1;       ///< while it is milled
   std::size_t memory_limit_bytes = std::size_t{4} << 30;
+  octree::KernelChoice kernel = octree::KernelChoice::kAuto;
 };
 
 /// Until a driven tool (Cutter::live()) cuts it is a TurningStock and nothing else. With the first

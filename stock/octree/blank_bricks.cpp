@@ -103,8 +103,7 @@ struct BrickMaker {
           std::clamp(std::lround(t * kEdgeParts), 0L, static_cast<long>(kEdgeParts - 1)));
       open.direction[e] = pack_direction(glm::vec3(field_of(blank, a + t * (b - a)).normal));
     });
-    for (int j = 0; j < kBrick; ++j)
-      for (int i = 0; i < kBrick; ++i) open.update_volume(i, j, 0xff);
+    open.measure();
     return open.close(false);
   }
 };

@@ -72,10 +72,10 @@ void OpenBrick::open(const BrickRef& ref) {
   if (!brick) {
     const bool solid = ref.is_solid();
     std::fill(std::begin(columns), std::end(columns), solid ? kFullColumn : std::uint16_t{0});
-    std::fill(std::begin(volume_of), std::end(volume_of), solid ? kNodeVolume : 0);
     std::fill(std::begin(height_of), std::end(height_of), solid ? kBrick * kEdgeParts : 0);
     volume = solid ? std::int64_t{kBrickNodes} * kNodeVolume : 0;
-    update_top();
+    top_node = solid ? kBrick : -1;
+    top_is_known = false;
     return;
   }
   std::memcpy(columns, brick->columns, sizeof columns);
@@ -87,15 +87,7 @@ void OpenBrick::open(const BrickRef& ref) {
     id[e] = brick->has_ids ? brick->ids()[next] : MeshPatch::kNotCut;
     ++next;
   });
-  std::fill(std::begin(volume_of), std::end(volume_of), 0);
-  volume = 0;
-  for (int j = 0; j < kBrick; ++j) {
-    for (int i = 0; i < kBrick; ++i) {
-      update_volume(i, j, 0xff);
-      update_height(i, j);
-    }
-  }
-  update_top();
+  measure();
 }
 
 BrickRef OpenBrick::close(bool with_ids) const {
@@ -126,51 +118,44 @@ BrickRef OpenBrick::close(bool with_ids) const {
 // axis that crosses it tells by itself: all of them together weigh 1, the squares of the normal's
 // parts. So an axis along a surface, whose edges do not see it, has no say, and what is left is
 // O(cell^2), of edges and curvature.
-void OpenBrick::update_volume(int i, int j, unsigned nodes) {
+void OpenBrick::measure() {
   constexpr float kScale = static_cast<float>(kNodeVolume / kEdgeParts);
-  const unsigned own = columns[j * kSide + i];
-  const unsigned crosses[3] = {crossed(0, i, j), crossed(1, i, j), crossed(2, i, j)};
-  for (; nodes != 0; nodes &= nodes - 1) {
-    const int k = std::countr_zero(nodes);
-    const bool solid = (own >> k & 1u) != 0;
-    std::int32_t share = solid ? kNodeVolume : 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((crosses[axis] >> k & 1u) == 0) continue;
-      const std::size_t e = edge_number(axis, i, j, k);
-      const float along = unpack_direction(direction[e])[axis];
-      const int beyond = solid ? place[e] - kEdgeParts / 2 : kEdgeParts / 2 - place[e];
-      share += static_cast<std::int32_t>(along * along * kScale * static_cast<float>(beyond));
-    }
-    std::int32_t& before = volume_of[(j * kBrick + i) * kBrick + k];
-    volume += share - before;
-    before = share;
-  }
-}
-
-void OpenBrick::update_height(int i, int j) {
-  const unsigned own = columns[j * kSide + i];
-  int height = std::popcount(own & own >> 1 & 0xffu) * kEdgeParts;
-  for (unsigned bits = crossed(2, i, j); bits != 0; bits &= bits - 1) {
-    const int k = std::countr_zero(bits);
-    const int lower = place[edge_number(2, i, j, k)];
-    height += (own >> k & 1u) ? lower : kEdgeParts - lower;
-  }
-  height_of[j * kBrick + i] = height;
-}
-
-void OpenBrick::update_top() {
   unsigned any = 0;
   for (const std::uint16_t column : columns) any |= column;
   top_node = static_cast<int>(std::bit_width(any)) - 1;
-  top = top_node * kEdgeParts;
-  if (top_node < 0 || top_node == kBrick) return;
+  top_is_known = false;
+  volume = 0;
+  for (int j = 0; j < kBrick; ++j) {
+    for (int i = 0; i < kBrick; ++i) {
+      const unsigned own = columns[j * kSide + i];
+      volume += std::int64_t{std::popcount(own & 0xffu)} * kNodeVolume;
+      height_of[j * kBrick + i] = std::popcount(own & own >> 1 & 0xffu) * kEdgeParts;
+    }
+  }
+  for_each_crossed(columns, [&](int axis, int i, int j, int k) {
+    const std::size_t e = edge_number(axis, i, j, k);
+    const bool solid = (columns[j * kSide + i] >> k & 1u) != 0;
+    const float along = unpack_direction(direction[e])[axis];
+    const int beyond = solid ? place[e] - kEdgeParts / 2 : kEdgeParts / 2 - place[e];
+    share[e] = static_cast<std::int32_t>(along * along * kScale * static_cast<float>(beyond));
+    volume += share[e];
+    if (axis == 2) height_of[j * kBrick + i] += solid ? place[e] : kEdgeParts - place[e];
+  });
+}
+
+int OpenBrick::top() {
+  if (top_is_known) return top_;
+  top_is_known = true;
+  top_ = top_node * kEdgeParts;
+  if (top_node < 0 || top_node == kBrick) return top_;
   // Where the upper neighbour is empty; there is a crossing on the edge to it.
   for (int j = 0; j < kBrick; ++j) {
     for (int i = 0; i < kBrick; ++i) {
       if (columns[j * kSide + i] >> top_node & 1u)
-        top = std::max(top, top_node * kEdgeParts + place[edge_number(2, i, j, top_node)]);
+        top_ = std::max(top_, top_node * kEdgeParts + place[edge_number(2, i, j, top_node)]);
     }
   }
+  return top_;
 }
 
 }  // namespace kerf::octree

@@ -35,7 +35,7 @@ struct Brick : Counted {
   std::uint16_t columns[kSide * kSide];  ///< [j * kSide + i], bit k: node (i, j, k) is solid
   std::uint16_t crossings = 0;
   bool has_ids = false;
-  std::int64_t volume = 0;  ///< sum of OpenBrick::volume_of
+  std::int64_t volume = 0;  ///< as OpenBrick::volume
 
   const std::uint32_t* directions() const {
     return reinterpret_cast<const std::uint32_t*>(this + 1);
@@ -62,9 +62,14 @@ struct OpenBrick {
   std::uint16_t place[3 * kBrickNodes];      ///< from the lower node, in kEdgeParts
   std::uint32_t direction[3 * kBrickNodes];  ///< out of the material, packed
   std::uint32_t id[3 * kBrickNodes];         ///< unused where ids are not kept
-  std::int32_t volume_of[kBrickNodes];       ///< of each node's share, in kNodeVolume
-  std::int64_t volume = 0;                   ///< sum of volume_of
-  std::int32_t height_of[kBrick * kBrick];   ///< solid length of a column, in kEdgeParts an edge
+  /// What the crossing adds to the volume, in kNodeVolume: nodes count as the boxes around them,
+  /// and planes are exact but for their ends.
+  std::int32_t share[3 * kBrickNodes];
+  std::int64_t volume = 0;                  ///< of solid own nodes and of all shares
+  std::int32_t height_of[kBrick * kBrick];  ///< solid length of a column, in kEdgeParts an edge
+  /// Height of the highest solid node above node 0, in nodes; -1: none.
+  int top_node = -1;
+  bool top_is_known = false;
 
   void open(const BrickRef& brick);
   /// Empty or solid where it is.
@@ -78,14 +83,13 @@ struct OpenBrick {
                                       : c >> 1;
     return (c ^ next) & 0xffu;
   }
-  /// Anew from columns and crossings: volume_of of the nodes in `nodes` of column (i, j), and the
-  /// sum. Planes are exact but for their ends.
-  void update_volume(int i, int j, unsigned nodes);
-  void update_height(int i, int j);
-  /// Height of the highest solid node above node 0, in nodes (-1: none), and of the highest
-  /// material known here, in kEdgeParts an edge.
-  void update_top();
-  int top_node = -1, top = 0;
+  /// Anew from columns and crossings: shares, volume, heights and top_node.
+  void measure();
+  /// Height of the highest material known here, in kEdgeParts an edge.
+  int top();
+
+ private:
+  int top_ = 0;
 };
 
 /// Calls visit(axis, i, j, k) for each crossed edge, in the order in which they are kept.

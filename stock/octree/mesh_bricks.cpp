@@ -124,8 +124,7 @@ class MeshBricks {
       const auto e = static_cast<std::size_t>(axis * kBrickNodes + (j * kBrick + i) * kBrick + k);
       set_crossing(axis, {tile_x_ + bi + i, tile_y_ + bj + j, bk + k}, from_solid, e);
     });
-    for (int j = 0; j < kBrick; ++j)
-      for (int i = 0; i < kBrick; ++i) open_.update_volume(i, j, 0xff);
+    open_.measure();
     return open_.close(false);
   }
 

@@ -261,6 +261,7 @@ Result<std::unique_ptr<Octree>> Octree::create(const OctreeOptions& options) {
   auto impl = std::make_unique<Impl>(options.additive ? solid_tree(lattice)
                                                       : blank_tree(lattice, options.blank, *pool));
   impl->pool = pool;
+  impl->kernel = pick_kernel(options.kernel);
   impl->additive = options.additive;
   if (!options.additive) {
     impl->tree.follow_reach();
@@ -281,18 +282,21 @@ Done Octree::save_with(const std::string& path, std::string beside) const {
       path, {impl_->tree, impl_->additive, impl_->blank_mm3, impl_->removed, std::move(beside)});
 }
 
-Result<std::unique_ptr<Octree>> Octree::load(const std::string& path, int threads) {
+Result<std::unique_ptr<Octree>> Octree::load(const std::string& path, int threads,
+                                             octree::KernelChoice kernel) {
   std::string beside;
-  return load_with(path, threads, beside);
+  return load_with(path, threads, kernel, beside);
 }
 
 Result<std::unique_ptr<Octree>> Octree::load_with(const std::string& path, int threads,
+                                                  octree::KernelChoice kernel,
                                                   std::string& beside) {
   const Result<std::string> bytes = read_state_bytes(path);
   if (!bytes) return Error{bytes.error()};
   Result<SavedTree> saved = parse_tree(*bytes, path);
   if (!saved) return Error{saved.error()};
   auto impl = std::make_unique<Impl>(std::move(saved->tree));
+  impl->kernel = pick_kernel(kernel);
   impl->additive = saved->additive;
   impl->blank_mm3 = saved->blank_mm3;
   impl->removed = saved->removed;
@@ -306,6 +310,7 @@ bool Octree::is_additive() const { return impl_->additive; }
 std::unique_ptr<Octree> Octree::placed(const AxisTurn& turn, const Vec3& at_mm) const {
   assert(!impl_->additive);
   auto impl = std::make_unique<Impl>(turned_tree(impl_->tree, turn, at_mm, *impl_->pool));
+  impl->kernel = impl_->kernel;
   impl->blank_mm3 = impl_->blank_mm3;
   impl->removed = impl_->removed;
   impl->pool = impl_->pool;
@@ -492,6 +497,7 @@ bool Octree::solid_at(const Vec3& point_mm, double within_mm) const {
 
 std::unique_ptr<StockModel> Octree::snapshot() const {
   auto copy = std::make_unique<Impl>(impl_->tree);
+  copy->kernel = impl_->kernel;
   copy->additive = impl_->additive;
   copy->bodies_of_blank = impl_->bodies_of_blank;
   copy->blank_mm3 = impl_->blank_mm3;

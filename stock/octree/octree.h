@@ -14,6 +14,7 @@
 #include "stock/blank.h"
 #include "stock/column_runs.h"
 #include "stock/octree/hermite_grid.h"
+#include "stock/octree/kernel_choice.h"
 #include "stock/octree/revolved_cut.h"
 #include "stock/solid_points.h"
 #include "stock/stock_model.h"
@@ -26,6 +27,7 @@ struct OctreeOptions {
   double cell_mm = 0.1;   ///< greatest edge of a cell: the true edges divide the blank evenly
   int threads = 1;        ///< cutting threads, >= 1
   bool additive = false;  ///< begin with nothing; moves add material, within the blank's box
+  octree::KernelChoice kernel = octree::KernelChoice::kAuto;
   std::size_t memory_limit_bytes = std::size_t{4} << 30;
 };
 
@@ -112,11 +114,14 @@ class Octree final : public StockModel,
   /// Saves and loads the workpiece (stock/octree/octree_state.h), without cut ids. A damaged file
   /// is an error that says what is wrong with it.
   Done save(const std::string& path) const override;
-  static Result<std::unique_ptr<Octree>> load(const std::string& path, int threads = 1);
+  static Result<std::unique_ptr<Octree>> load(
+      const std::string& path, int threads = 1,
+      octree::KernelChoice kernel = octree::KernelChoice::kAuto);
   /// The same with bytes that lie beside it in the file, and mean nothing to it: it does not keep
   /// them.
   Done save_with(const std::string& path, std::string beside) const;
   static Result<std::unique_ptr<Octree>> load_with(const std::string& path, int threads,
+                                                   octree::KernelChoice kernel,
                                                    std::string& beside);
   bool is_additive() const;
   /// As it lies elsewhere, its axes on axes: nodes, crossings and normals change places, and none

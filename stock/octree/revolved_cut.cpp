@@ -58,8 +58,7 @@ class RevolvedCutter {
     const std::int64_t before = open_.volume;
     if (sight == ProfileSlices::Sight::kMixed) {
       if (!cut_nodes()) return false;
-      for (int j = 0; j < kBrick; ++j)
-        for (int i = 0; i < kBrick; ++i) open_.update_volume(i, j, 0xff);
+      open_.measure();
       after = open_.close(tree_.keeps_ids());
     }
     gone_ += before - (after.is_empty() ? 0 : open_.volume);

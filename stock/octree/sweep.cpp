@@ -99,6 +99,19 @@ void add_straight(const ToolBody& body, const Vec3& from, const Vec3& to, const 
   if (bound(sweep, box, 0, bounds)) out.push_back(sweep);
 }
 
+/// The frame of the way from `step`, with the spindle half way between w0 and w1.
+void set_mean(Sweep& piece, const Vec3& w0, const Vec3& w1) {
+  piece.mean_w = glm::normalize(w0 + w1);
+  piece.length_w = glm::dot(piece.step, piece.mean_w);
+  const Vec3 level = piece.step - piece.length_w * piece.mean_w;
+  piece.length_u = glm::length(level);
+  piece.u = piece.length_u > kNothing_mm ? level / piece.length_u : any_across(piece.mean_w);
+  piece.v = glm::cross(piece.mean_w, piece.u);
+  // Directions between them go along the chord: none is farther from the middle than the ends.
+  piece.off_rad = std::max(glm::length(w0 - piece.mean_w), glm::length(w1 - piece.mean_w)) *
+                  (1 + kTurnPiece_rad);
+}
+
 void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const SweepTarget& target,
                  std::vector<Sweep>& out) {
   const Box& bounds = target.bounds_mm;
@@ -123,6 +136,7 @@ void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const S
     piece.w = w0;
     piece.step = tip1 - tip0;
     piece.turn = w1 - w0;
+    set_mean(piece, w0, w1);
     const double reach =
         std::max(reach_above(bounds, tip0, w0, body), reach_above(bounds, tip1, w1, body)) *
         (1 + kTurnPiece_rad);

@@ -37,6 +37,10 @@ struct Sweep {
   // kTurn: tip at origin + s * step, spindle along w + s * turn
   Vec3 step{0}, turn{0};
   double bend_mm = 0;  ///< kTurn: by how much F along s may bend the wrong way, at most
+  /// kTurn: the same way with the spindle fixed half way between its directions, whose F is convex:
+  /// u, v, length_u and length_w are of its frame. It turns away from that by at most off_rad.
+  Vec3 mean_w{0, 0, 1};
+  double off_rad = 0;
   /// Nothing below this is touched, by a tool that stands upright; by others -infinity.
   double bottom_mm = -std::numeric_limits<double>::infinity();
   Box box_mm;  ///< what it can touch, within the bounds given to append_sweeps()

@@ -1,6 +1,8 @@
-// stock/octree/sweep_kernel.h - F of a sweep at many points at once.
+// stock/octree/sweep_kernel.h - F of a sweep at many points at once, and what a brick loses by it.
 #pragma once
 
+#include "stock/octree/brick_work.h"
+#include "stock/octree/kernel_choice.h"
 #include "stock/octree/sweep.h"
 
 namespace kerf::octree {
@@ -17,20 +19,21 @@ struct SweepKernel {
                    double* f);
   void (*gradient)(const Sweep& sweep, int n, const double* x, const double* y, const double* z,
                    double* f, double* gx, double* gy, double* gz);
-  /// Of a turning piece of any bend: what F is not less than. As close as telling it from `level`
-  /// takes, within sixteenths of the bend.
-  void (*turn_bound)(const Sweep& sweep, double level, int n, const double* x, const double* y,
-                     const double* z, double* f);
+  /// Takes the sweep from an open brick; false if nothing has changed. Else work has what was
+  /// removed, and in lost_edges where there may be films, with F and its gradient.
+  bool (*remove)(BrickWork& work, const Sweep& sweep, OpenBrick& brick);
+  /// Would it take something? Changes nothing of the brick.
+  bool (*meets)(BrickWork& work, const Sweep& sweep, const OpenBrick& brick);
 };
 inline constexpr double kSweepSlack_mm = 1e-7;
 
-enum class KernelChoice { kAuto, kScalar, kAvx2 };
-/// kAuto: the fastest this machine has. kAvx2 must not be asked for where has_avx2() is false.
+/// kAuto: the fastest this machine has. Others must not be asked for where has_avx2() or
+/// has_avx512() is false.
 SweepKernel pick_kernel(KernelChoice choice);
-bool has_avx2();
 
-/// One for each instruction set (sweep_lanes.h compiled twice).
+/// One for each instruction set (sweep_lanes.h and brick_lanes.h compiled for each).
 SweepKernel scalar_kernel();
 SweepKernel avx2_kernel();
+SweepKernel avx512_kernel();
 
 }  // namespace kerf::octree

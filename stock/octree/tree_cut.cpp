@@ -218,11 +218,10 @@ std::vector<double> alike_above_mm(std::span<const Sweep> sweeps) {
 /// Cuts one column of tiles after the other. One for each thread.
 class ColumnCutter {
  public:
-  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, const TurnGroups& groups,
-               std::span<const Sweep> all, const std::vector<double>& alike_above_mm, bool additive,
-               std::uint64_t version, std::size_t reports, bool seek_films)
+  ColumnCutter(BrickTree& tree, const SweepKernel& kernel, std::span<const Sweep> all,
+               const std::vector<double>& alike_above_mm, bool additive, std::uint64_t version,
+               std::size_t reports, bool seek_films)
       : tree_(tree),
-        groups_(groups),
         all_(all),
         alike_above_mm_(alike_above_mm),
         additive_(additive),
@@ -358,7 +357,7 @@ class ColumnCutter {
         return is_gone_ = true;
       }
       if (((t.whole | t.some) & bit(number)) == 0) continue;
-      if (!cutter_.apply(*t.sweep, open_, groups_.of(*t.sweep))) continue;
+      if (!cutter_.apply(*t.sweep, open_)) continue;
       changed = true;
       add_own(t.sweep->report, cutter_.removed(), cutter_.removed_heights());
       if (open_.top_node < 0) return is_gone_ = true;
@@ -434,7 +433,6 @@ class ColumnCutter {
   };
 
   BrickTree& tree_;
-  const TurnGroups& groups_;
   std::span<const Sweep> all_;
   const std::vector<double>& alike_above_mm_;  ///< of all_
   std::vector<std::size_t> reaching_;
@@ -477,7 +475,6 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   std::vector<int> columns;
   for (std::size_t c = 0; c < lists.size(); ++c)
     if (!lists[c].empty()) columns.push_back(static_cast<int>(c));
-  const TurnGroups groups(sweeps, tree.lattice());
   const std::vector<double> alike = alike_above_mm(sweeps);
   tree.own_reach();
   const std::uint64_t version = next_version();
@@ -485,7 +482,7 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
   std::vector<std::vector<MoveTotals>> parts(static_cast<std::size_t>(pool.threads()));
   std::vector<std::vector<FilmSpot>> spots(parts.size());
   pool.run([&](int thread) {
-    ColumnCutter cutter(tree, kernel, groups, sweeps, alike, additive, version, totals.size(),
+    ColumnCutter cutter(tree, kernel, sweeps, alike, additive, version, totals.size(),
                         films != nullptr);
     for (std::size_t n = next++; n < columns.size(); n = next++)
       cutter.cut(columns[n], sweeps, lists[static_cast<std::size_t>(columns[n])]);
@@ -509,7 +506,6 @@ void cut_tree(BrickTree& tree, std::span<const Sweep> sweeps, const SweepKernel&
 bool touches_tree(const BrickTree& tree, std::span<const BlankBody> blank,
                   std::span<const Sweep> sweeps, const SweepKernel& kernel) {
   const auto lists = by_column(tree.lattice(), sweeps);
-  const TurnGroups groups(sweeps, tree.lattice());
   ColumnPlan plan(tree, kernel);
   BrickCutter cutter(tree.lattice(), kernel, false);
   BlankContact untouched(tree.lattice(), kernel, blank);
@@ -529,7 +525,7 @@ bool touches_tree(const BrickTree& tree, std::span<const BlankBody> blank,
           if (brick.is_empty()) continue;
           open.open(brick);
           cutter.set_place(plan.brick_x(number), plan.brick_y(number), bz);
-          if (cutter.touches(*t.sweep, open, groups.of(*t.sweep))) return true;
+          if (cutter.touches(*t.sweep, open)) return true;
           const int bx = plan.brick_x(number), by = plan.brick_y(number);
           if (untouched.touches(*t.sweep, bx, by, bz, tree.untouched(bx, by, bz))) return true;
         }

@@ -79,8 +79,7 @@ class TreeTurner {
     }
     for_each_crossed(open_->columns,
                      [&](int axis, int i, int j, int k) { turn_edge(axis, i, j, k); });
-    for (int j = 0; j < kBrick; ++j)
-      for (int i = 0; i < kBrick; ++i) open_->update_volume(i, j, 0xff);
+    open_->measure();
     return open_->close(false);
   }
 

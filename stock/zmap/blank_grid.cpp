@@ -100,7 +100,7 @@ std::string memory_text(double cells) {
 }  // namespace
 
 Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t most_cells,
-                                 const std::string& model) {
+                                 const std::string& model, bool keeps_cut_ids) {
   const double cell = cell_mm;
   const Box box = blank.bounds_mm();
   const MeshBody* const mesh = blank.mesh ? blank.mesh->body.get() : nullptr;
@@ -130,7 +130,7 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
         "allowed",
         cell, nx, ny, memory_text(nx * ny), memory_text(static_cast<double>(most_cells)))};
   }
-  TileGrid grid(box, static_cast<int>(nx), static_cast<int>(ny));
+  TileGrid grid(box, static_cast<int>(nx), static_cast<int>(ny), keeps_cut_ids);
   if (mesh)
     fill_mesh(grid, *mesh);
   else

@@ -16,8 +16,9 @@ namespace kerf {
 /// Error if cell_mm is not finite or <= 0, exceeds the blank, or makes more than `most_cells` cells
 /// (then the message says how much memory the heights would take), or if a body cannot be held
 /// (cylinder along x or y, floors at different heights); it calls the model `model`, "a Z-map".
+/// `keeps_cut_ids`: TileGrid::keep_cut_ids().
 Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t most_cells,
-                                 const std::string& model);
+                                 const std::string& model, bool keeps_cut_ids);
 
 /// The cells of a grid seen from above.
 ColumnGrid columns_of(const TileGrid& grid);

@@ -1,10 +1,12 @@
 // stock/zmap/height_mesh.h - closed triangle mesh of a height grid: top, walls, floor.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "base/geometry.h"
 #include "base/triangle_mesh.h"
+#include "stock/zmap/cell_step.h"
 
 namespace kerf {
 
@@ -17,6 +19,8 @@ struct CellHeights {
   int ny = 0;
   Box bounds_mm;
   std::span<const float> heights_mm;
+  /// Where walls stand between middles of cells, in the order of cell_steps(); none: nobody knows.
+  std::optional<std::span<const CellStep>> steps{};
 };
 
 /// Where a hole is so narrow that the surface would touch itself along an edge, the cells there are
@@ -45,9 +49,15 @@ inline constexpr float kHoleFilmMm = 0.001f;
 /// Source: W. Evans, D. Kirkpatrick, G. Townsend, "Right-triangulated irregular networks",
 /// Algorithmica 30, 2001.
 ///
+/// Where CellHeights::steps are given (and the grid is at least two cells wide and deep), walls
+/// stand upright there, with a sharp edge above and below; half way between a cell with material
+/// and one without where none is given. Then there are no films, and the surface is that of all
+/// cells beside the squares through which walls run, in which it is within the cells' own heights.
+///
 /// Result: closed, every edge in exactly two triangles, normals outward, no triangle without area;
 /// empty if no cell holds material. threads >= 1; same result for any. O(cells) time; memory beside
-/// the result: 2 bits per cell, a float more with a tolerance, 5 bytes more if there are holes.
+/// the result: 2 bits per cell, a float more with a tolerance, 5 bytes more if there are holes; of
+/// walls some 200 bytes for each square with one.
 TriangleMesh mesh_height_grid(const CellHeights& grid, double tolerance_mm, int threads = 1);
 
 }  // namespace kerf

@@ -129,7 +129,8 @@ void split_fans(TriangleMesh& mesh, const std::vector<bool>& is_shared) {
 
 }  // namespace
 
-TriangleMesh compact(const Relief& relief, NodeMesh&& nodes, int threads) {
+TriangleMesh compact(const Relief& relief, const StepSquares* steps, NodeMesh&& nodes,
+                     int threads) {
   const Numbering numbering(nodes.used());
   TriangleMesh mesh;
   mesh.triangles = nodes.take_triangles();
@@ -137,7 +138,9 @@ TriangleMesh compact(const Relief& relief, NodeMesh&& nodes, int threads) {
   parallel_parts(numbering.words(), kLeastTriangles / 8, threads,
                  [&](std::size_t begin, std::size_t end) {
                    for_each_used(numbering, begin, end, [&](NodeKey key, std::uint32_t index) {
-                     mesh.positions_mm[index] = relief.position_mm(key);
+                     mesh.positions_mm[index] = steps != nullptr && steps->is_own(key)
+                                                    ? steps->position_mm(key)
+                                                    : relief.position_mm(key);
                    });
                  });
   parallel_parts(mesh.triangles.size(), kLeastTriangles, threads,
@@ -148,7 +151,7 @@ TriangleMesh compact(const Relief& relief, NodeMesh&& nodes, int threads) {
                      }
                    }
                  });
-  if (relief.has_holes()) {
+  if (relief.has_holes() && steps == nullptr) {
     std::vector<bool> is_shared(numbering.count());
     for_each_used(numbering, 0, numbering.words(), [&](NodeKey key, std::uint32_t index) {
       is_shared[index] = relief.at_hole(key);

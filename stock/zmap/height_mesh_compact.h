@@ -8,6 +8,7 @@ namespace kerf {
 /// Numbers the used nodes in the order of their keys. Where the mesh touches itself at a point of a
 /// hole's edge, that point becomes several vertices at the same place, so that the triangles around
 /// each vertex form one closed fan.
-TriangleMesh compact(const Relief& relief, NodeMesh&& nodes, int threads);
+/// `steps` may be null.
+TriangleMesh compact(const Relief& relief, const StepSquares* steps, NodeMesh&& nodes, int threads);
 
 }  // namespace kerf

@@ -34,8 +34,10 @@ std::vector<std::size_t> slots(int cells, int steps, std::size_t& count) {
 
 }  // namespace
 
-Refinement::Refinement(const Relief& relief, double tolerance_mm, int threads)
+Refinement::Refinement(const Relief& relief, const StepSquares* steps, double tolerance_mm,
+                       int threads)
     : relief_(relief),
+      steps_squares_(steps),
       cells_(relief.cells_mm()),
       nx_(relief.nx()),
       ny_(relief.ny()),
@@ -50,6 +52,7 @@ Refinement::Refinement(const Relief& relief, double tolerance_mm, int threads)
   errors_.assign(rows * stride_, 0.0f);
   no_errors_.assign(stride_, 0.0f);
   if (relief.has_holes()) keep_cells_around_holes();
+  if (steps != nullptr) keep_cells_around_steps();
   for (int s = 2; s <= steps_; s *= 2) measure_level(s, threads);
 }
 
@@ -79,6 +82,29 @@ void Refinement::keep_cells_around_holes() {
       if (kind == (kSolid | kHole)) errors(v)[column_slot_[std::size_t(u)]] = kAlways;
     }
   }
+}
+
+/// All corners of what has been divided.
+void Refinement::keep_cells_around_steps() {
+  for (int v = 0; v <= steps_; ++v) {
+    if (v >= ny_ && row_slot_[std::size_t(v)] == 0) continue;
+    for (int u = 0; u <= steps_; ++u) {
+      if (u >= nx_ && column_slot_[std::size_t(u)] == 0) continue;
+      const int i = column(u), j = row(v);
+      if (steps_squares_->is_divided(i, j) || steps_squares_->is_divided(i + 1, j) ||
+          steps_squares_->is_divided(i, j + 1) || steps_squares_->is_divided(i + 1, j + 1))
+        errors(v)[column_slot_[std::size_t(u)]] = kAlways;
+    }
+  }
+}
+
+/// Half a square that has been divided.
+bool Refinement::is_elsewhere(const Triangle& t, bool on_floor) const {
+  const auto [u_low, u_high] = std::minmax({t.a.u, t.b.u, t.c.u});
+  const auto [v_low, v_high] = std::minmax({t.a.v, t.b.v, t.c.v});
+  if (u_high - u_low > 1 || v_high - v_low > 1) return false;
+  return steps_squares_->is_divided(u_low + 1, v_low + 1) &&
+         (!on_floor || steps_squares_->is_open(u_low + 1, v_low + 1));
 }
 
 // ---- Errors, from the smallest squares up -------------------------------------------------------
@@ -371,6 +397,7 @@ void Refinement::extract_below(const Triangle& t, float limit, bool on_floor,
 }
 
 void Refinement::emit(const Triangle& t, bool on_floor, std::vector<NodeTriangle>& out) const {
+  if (steps_squares_ != nullptr && is_elsewhere(t, on_floor)) return;
   NodeTriangle keys;
   bool solid = !relief_.has_holes();
   const Node* const corners[3] = {&t.a, &t.b, &t.c};

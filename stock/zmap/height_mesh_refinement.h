@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stock/zmap/height_mesh_relief.h"
+#include "stock/zmap/height_mesh_steps.h"
 
 namespace kerf {
 
@@ -33,7 +34,8 @@ class Refinement {
  public:
   /// relief: alternating, at least two cells wide and deep; must outlive this. Memory: one float
   /// per cell.
-  Refinement(const Relief& relief, double tolerance_mm, int threads);
+  /// What `steps` (which may be null) has divided is left out; of the floor, what is open.
+  Refinement(const Relief& relief, const StepSquares* steps, double tolerance_mm, int threads);
 
   /// The surface over the cell centres, in single triangles, counter-clockwise from above; those
   /// wholly on the floor are left out.
@@ -62,6 +64,8 @@ class Refinement {
   }
 
   void keep_cells_around_holes();
+  void keep_cells_around_steps();
+  bool is_elsewhere(const Triangle& t, bool on_floor) const;
   void measure_level(int s, int threads);
   void measure_edges_along_x(int s, int v0);
   void measure_edges_along_y(int s, int v0);
@@ -81,6 +85,7 @@ class Refinement {
   void emit(const Triangle& t, bool on_floor, std::vector<NodeTriangle>& out) const;
 
   const Relief& relief_;
+  const StepSquares* steps_squares_;
   const float* cells_;
   int nx_;
   int ny_;

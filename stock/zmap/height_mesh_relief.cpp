@@ -21,7 +21,9 @@ std::vector<double> lattice_lines(double from_mm, double to_mm, int cells) {
 }  // namespace
 
 Relief::Relief(const CellHeights& grid, bool alternating)
-    : alternating_(alternating), floor_mm_(static_cast<float>(grid.bounds_mm.min.z)) {
+    : alternating_(alternating),
+      has_steps_(grid.steps && std::min(grid.nx, grid.ny) >= 2),
+      floor_mm_(static_cast<float>(grid.bounds_mm.min.z)) {
   assert(grid.nx >= 1 && grid.ny >= 1);
   assert(grid.heights_mm.size() == std::size_t(grid.nx) * std::size_t(grid.ny));
   const int repeat_x = alternating && grid.nx == 1 ? 2 : 1;
@@ -32,7 +34,7 @@ Relief::Relief(const CellHeights& grid, bool alternating)
   x_mm_ = lattice_lines(grid.bounds_mm.min.x, grid.bounds_mm.max.x, nx_);
   y_mm_ = lattice_lines(grid.bounds_mm.min.y, grid.bounds_mm.max.y, ny_);
   take_cells(grid, repeat_x, repeat_y);
-  if (has_holes_ && has_material_) close_narrow_holes();
+  if (has_holes_ && has_material_ && !has_steps_) close_narrow_holes();
 }
 
 void Relief::take_cells(const CellHeights& grid, int repeat_x, int repeat_y) {

@@ -31,6 +31,8 @@ class Relief {
   /// (as bisection makes them); else all go from low x, y to high x, y. With alternating a grid one
   /// cell wide becomes two half cells wide (the same surface), so that there are squares.
   Relief(const CellHeights& grid, bool alternating);
+  /// Walls are where they stand (height_mesh_steps.h); so no hole is too narrow.
+  bool has_steps() const { return has_steps_; }
 
   int nx() const { return nx_; }
   int ny() const { return ny_; }
@@ -87,6 +89,7 @@ class Relief {
   int nx_ = 0;
   int ny_ = 0;
   bool alternating_ = false;
+  bool has_steps_ = false;
   bool has_holes_ = false;
   bool has_material_ = false;
   float floor_mm_ = 0.0f;

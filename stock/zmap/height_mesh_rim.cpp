@@ -1,5 +1,6 @@
 #include "stock/zmap/height_mesh_rim.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -36,6 +37,11 @@ class Side {
         return {depth, j_end - step};
     }
   }
+  /// As x_mm(), of any point.
+  double along_mm(const glm::vec3& at) const {
+    const auto along = static_cast<double>(along_x() ? at.x : at.y);
+    return number_ < 2 ? along : -along;
+  }
   /// Grows with `step`.
   double x_mm(int step) const {
     const Node n = at(step, 0);
@@ -55,8 +61,8 @@ double area_sign(const ChainPoint& a, const ChainPoint& b, const ChainPoint& c) 
 
 class BorderBuilder {
  public:
-  BorderBuilder(const Relief& relief, bool on_floor, NodeMesh& mesh)
-      : relief_(relief), on_floor_(on_floor), mesh_(mesh) {}
+  BorderBuilder(const Relief& relief, const StepSquares* steps, bool on_floor, NodeMesh& mesh)
+      : relief_(relief), steps_(steps), on_floor_(on_floor), mesh_(mesh) {}
 
   void build() {
     for (int number = 0; number < 4; ++number) add_side(number);
@@ -99,6 +105,7 @@ class BorderBuilder {
       const Node a = side.at(chain[at], 1);
       const Node b = side.at(chain[at + 1], 1);
       if (!relief_.node_is_solid(a.i, a.j) && !relief_.node_is_solid(b.i, b.j)) continue;
+      if (chain[at + 1] == chain[at] + 1 && is_elsewhere(side, chain[at])) continue;
       const NodeKey outer_a = outer(side, chain, at);
       const NodeKey outer_b = outer(side, chain, at + 1);
       add(outer_a, outer_b, key(b));
@@ -107,6 +114,14 @@ class BorderBuilder {
     const std::size_t n = std::size_t(number);
     first_outer_[n] = outer(side, chain, 0);
     last_outer_[n] = outer(side, chain, chain.size() - 1);
+  }
+
+  /// Of the square between two neighbouring nodes and the edge of the grid.
+  bool is_elsewhere(const Side& side, int step) const {
+    if (!steps_) return false;
+    const Node a = side.at(step, 0), b = side.at(step + 1, 1);
+    const int i = std::min(a.i, b.i), j = std::min(a.j, b.j);
+    return steps_->is_divided(i, j) && (!on_floor_ || steps_->is_open(i, j));
   }
 
   /// The corner of the grid at the end of a side: level, as all of it has the height of one cell.
@@ -120,6 +135,7 @@ class BorderBuilder {
   }
 
   const Relief& relief_;
+  const StepSquares* const steps_;
   const bool on_floor_;
   NodeMesh& mesh_;
   std::array<NodeKey, 4> first_outer_{};
@@ -137,11 +153,11 @@ void NodeMesh::add(std::vector<NodeTriangle>&& more) {
   }
 }
 
-void add_border(const Relief& relief, bool on_floor, NodeMesh& mesh) {
-  BorderBuilder(relief, on_floor, mesh).build();
+void add_border(const Relief& relief, const StepSquares* steps, bool on_floor, NodeMesh& mesh) {
+  BorderBuilder(relief, steps, on_floor, mesh).build();
 }
 
-void add_walls(const Relief& relief, NodeMesh& mesh) {
+void add_walls(const Relief& relief, const StepSquares* steps, NodeMesh& mesh) {
   for (int number = 0; number < 4; ++number) {
     const Side side(relief, number);
     std::vector<ChainPoint> lower;
@@ -151,22 +167,37 @@ void add_walls(const Relief& relief, NodeMesh& mesh) {
       lower.clear();
       upper.clear();
     };
+    const auto add_on_floor = [&](const ChainPoint& point) {
+      if (!upper.empty()) {
+        lower.push_back(point);
+        upper.push_back(point);
+        if (upper.size() >= 3 || upper.front().key != lower.front().key) finish_run();
+      }
+      lower.assign(1, point);
+      upper.assign(1, point);
+    };
     // A run ends where two neighbouring points of the surface lie on the floor: a hole is between
     // them. The points of the floor are not taken into account before the run has begun.
     for (int step = 0; step < side.length(); ++step) {
+      if (step > 0 && steps) {
+        const Node a = side.at(step - 1, 0), b = side.at(step, 0);
+        if (const auto points = steps->points(a.i, a.j, b.i, b.j)) {
+          for (const NodeKey key : {points->here, points->there}) {
+            const glm::vec3 at = steps->position_mm(key);
+            const ChainPoint point{side.along_mm(at), at.z, key};
+            if (at.z > relief.floor_mm())
+              upper.push_back(point);
+            else
+              add_on_floor(point);
+          }
+        }
+      }
       const Node n = side.at(step, 0);
       const NodeKey top = relief.top_key(n.i, n.j);
       const NodeKey bottom = relief.floor_key(n.i, n.j);
       const ChainPoint point{side.x_mm(step), relief.floor_mm(), bottom};
       if (top == bottom) {
-        if (!mesh.uses(bottom)) continue;
-        if (!upper.empty()) {
-          lower.push_back(point);
-          upper.push_back(point);
-          if (upper.size() >= 3 || upper.front().key != lower.front().key) finish_run();
-        }
-        lower.assign(1, point);
-        upper.assign(1, point);
+        if (mesh.uses(bottom)) add_on_floor(point);
         continue;
       }
       if (mesh.uses(bottom)) lower.push_back(point);

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "stock/zmap/height_mesh_relief.h"
+#include "stock/zmap/height_mesh_steps.h"
 
 namespace kerf {
 
 /// Triangles by node, and which nodes they use.
 class NodeMesh {
  public:
-  explicit NodeMesh(const Relief& relief) : used_((2 * relief.node_count() + 63) / 64, 0) {}
+  explicit NodeMesh(std::size_t key_count) : used_((key_count + 63) / 64, 0) {}
 
   void add(const NodeTriangle& triangle) {
     triangles_.push_back(triangle);
@@ -34,12 +35,12 @@ class NodeMesh {
 };
 
 /// Adds the half cells between the outer cell centres that the mesh uses and the edge of the grid:
-/// to the surface, or to the floor.
-void add_border(const Relief& relief, bool on_floor, NodeMesh& mesh);
+/// to the surface, or to the floor; but not what `steps` (which may be null) has divided.
+void add_border(const Relief& relief, const StepSquares* steps, bool on_floor, NodeMesh& mesh);
 
 /// Adds the walls between the nodes of the surface and those of the floor on the edge of the grid.
 /// The mesh must hold both, edge included.
-void add_walls(const Relief& relief, NodeMesh& mesh);
+void add_walls(const Relief& relief, const StepSquares* steps, NodeMesh& mesh);
 
 /// Divides the area between two chains of points, both from left to right, `upper` nowhere below
 /// `lower`; at each end they share a point or stand above each other. Triangles counter-clockwise,

@@ -17,15 +17,22 @@ constexpr std::size_t kSweepsAtOnce = std::size_t{1} << 16;
 /// The kernels count blocks of cells from where a sweep begins, in single precision: exact up to
 /// 2^24.
 constexpr double kMostBlocks = 1 << 22;
+/// As many as fill half a megabyte.
+constexpr std::size_t kUnmarkedOps = 2048;
 /// A depth is greater than another one if it is by more than this.
 constexpr double kDeeper_mm = 1e-4;
 
 }  // namespace
 
 SweepKernels pick_kernels(ZMapKernel kernel) {
+  if (kernel == ZMapKernel::kAuto || !zmap_can_run(kernel)) kernel = zmap_kernels().front();
 #if defined(__x86_64__)
-  if (kernel != ZMapKernel::kScalar && zmap_has_avx2())
+  if (kernel == ZMapKernel::kAvx2)
     return {zmap_avx2::run_sweeps, zmap_avx2_ids::run_sweeps, zmap_avx2_gaps::run_sweeps};
+#endif
+#if defined(__x86_64__) || defined(__aarch64__)
+  if (kernel != ZMapKernel::kScalar)
+    return {zmap_vector::run_sweeps, zmap_vector_ids::run_sweeps, zmap_vector_gaps::run_sweeps};
 #endif
   return {zmap_scalar::run_sweeps, zmap_scalar_ids::run_sweeps, zmap_scalar_gaps::run_sweeps};
 }
@@ -114,7 +121,55 @@ void HeightSweeper::run(HollowColumns* hollows, std::size_t report_count) {
     sweep(whole, kernel, report_count);
   }
   if (gaps) hollows->end();
+  if (walls_.is_kept()) put_off_walls();
   ops_.clear();
+}
+
+/// Most sides of a path are cut away by what follows: of them nothing is found where many sweeps
+/// are looked at together, after the last of them.
+void HeightSweeper::put_off_walls() {
+  for (const SweepOp& op : ops_) {
+    const bool may_leave = std::any_of(tools_.begin(), tools_.end(), [&](const ConvexTool& tool) {
+      return may_leave_wall(grid, tool, op);
+    });
+    if (may_leave) unmarked_.push_back(op);
+  }
+  if (unmarked_.size() >= kUnmarkedOps) mark_walls();
+}
+
+void HeightSweeper::mark_walls() {
+  if (unmarked_.empty()) return;
+  const auto threads = static_cast<std::size_t>(pool->threads());
+  marks_.resize(threads);
+  const auto work = [&](int number) {
+    const auto n = static_cast<std::size_t>(number);
+    const std::size_t begin = unmarked_.size() * n / threads,
+                      end = unmarked_.size() * (n + 1) / threads;
+    const std::span<const SweepOp> part = std::span(unmarked_).subspan(begin, end - begin);
+    for (const ConvexTool& tool : tools_) find_wall_marks(grid, tool, part, marks_[n]);
+  };
+  if (threads == 1)
+    work(0);
+  else
+    pool->run(work);
+  for (std::vector<PlacedMark>& part : marks_) {
+    for (const PlacedMark& placed : part) walls_.add(placed.tile, placed.mark, grid);
+    part.clear();  // snapshots copy it
+  }
+  unmarked_.clear();
+}
+
+void HeightSweeper::keep_walls(std::span<const BlankBody> bodies) {
+  walls_ = WallMarks(grid);
+  std::vector<PlacedMark> marks;
+  for (const BlankBody& body : bodies) {
+    const bool is_tube = body.kind == BlankBody::Kind::kTube;
+    if (body.axis != 'z' || !(is_tube || body.kind == BlankBody::Kind::kCylinder)) continue;
+    const Vec2 center(body.center_mm);
+    find_side_marks(grid, center, 0.5 * body.diameter_mm, false, marks);
+    if (is_tube) find_side_marks(grid, center, 0.5 * body.inner_diameter_mm, true, marks);
+  }
+  for (const PlacedMark& placed : marks) walls_.add(placed.tile, placed.mark, grid);
 }
 
 void HeightSweeper::sweep(const GridView& whole, SweepKernel* kernel, std::size_t report_count) {
@@ -158,6 +213,7 @@ void HeightSweeper::use_cutter(const Cutter& cutter, HollowColumns* hollows,
                                std::vector<CutReport>& reports) {
   if (cutter.spec() == cutter_spec_ && !tools_.empty()) return;
   end_path(hollows, reports);
+  mark_walls();
   cutter_spec_ = cutter.spec();
   tools_ = convex_components(cutter.profile());
   tip_ = traces_.tip_of(tools_);

@@ -15,6 +15,8 @@
 #include "stock/zmap/sweep_ops.h"
 #include "stock/zmap/tile_grid.h"
 #include "stock/zmap/tip_traces.h"
+#include "stock/zmap/wall_marks.h"
+#include "stock/zmap/wall_rims.h"
 #include "stock/zmap/zmap.h"
 
 namespace kerf {
@@ -77,6 +79,16 @@ class HeightSweeper {
     else
       traces_.follow_sides(blank.bodies);
   }
+  /// From now on walls() has where upright sides stand. Round sides of `bodies`, which are in the
+  /// grid, may be told.
+  void keep_walls(std::span<const BlankBody> bodies = {});
+  /// Of the grid as it is; empty where nobody keeps them. Works off what has been put off: the
+  /// owner's thread asks first, then others may.
+  WallMarks& walls() {
+    mark_walls();
+    walls_.settle(grid);
+    return walls_;
+  }
   /// Of a workpiece that was cut before by nobody knows what.
   void forget_traces() { traces_.forget(); }
   /// Moves of another cutter, the union of `tools`, that the caller cuts himself.
@@ -98,6 +110,8 @@ class HeightSweeper {
   double radius_mm() const;
   bool may_be_deepest(const CutMove& move) const;
   double tip_depth_mm(const CutMove& move, HollowColumns* hollows);
+  void put_off_walls();
+  void mark_walls();
   void sweep(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
   void sweep_by_moves(const GridView& whole, SweepKernel* kernel, std::size_t report_count);
   GridView view();
@@ -116,7 +130,10 @@ class HeightSweeper {
   std::vector<SweepOp> ops_;  // kept between calls to save allocations
   std::vector<SweepTotals> totals_;
   std::vector<float*> pointers_;
-  std::vector<std::uint32_t> cut_ids_;  ///< by report; unused where they are not kept
+  WallMarks walls_;
+  std::vector<SweepOp> unmarked_;               ///< of tools_; their walls have not been looked for
+  std::vector<std::vector<PlacedMark>> marks_;  ///< by thread
+  std::vector<std::uint32_t> cut_ids_;          ///< by report; unused where they are not kept
 };
 
 }  // namespace kerf

@@ -30,6 +30,40 @@ bool read_head(StateHead& reader, Head& head) {
          reader.numbers("blank_mm3", &head.blank_mm3, 1) && reader.line("data") && sane(head);
 }
 
+void put_marks(StateWriter& file, const TileGrid& grid, const WallMarks& marks) {
+  std::vector<std::vector<WallMark>> tiles(grid.tile_count());
+  bool any = false;
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    tiles[tile] = marks.marks(tile, grid);
+    any |= !tiles[tile].empty();
+  }
+  if (!any) return;
+  for (const std::vector<WallMark>& tile : tiles) {
+    const auto count = static_cast<std::uint32_t>(tile.size());
+    file.put(&count, sizeof count);
+    file.put(tile.data(), tile.size() * sizeof(WallMark));
+  }
+}
+
+/// False where they are not what put_marks() writes.
+bool take_marks(std::string_view bytes, SavedState& state) {
+  if (bytes.empty()) return true;
+  for (std::size_t tile = 0; tile < state.grid.tile_count(); ++tile) {
+    std::uint32_t count = 0;
+    if (bytes.size() < sizeof count) return false;
+    std::memcpy(&count, bytes.data(), sizeof count);
+    bytes.remove_prefix(sizeof count);
+    if (bytes.size() / sizeof(WallMark) < count) return false;
+    for (; count > 0; --count, bytes.remove_prefix(sizeof(WallMark))) {
+      WallMark mark;
+      std::memcpy(&mark, bytes.data(), sizeof mark);
+      if (!is_sound(mark, tile, state.grid)) return false;
+      state.marks.push_back({static_cast<std::uint32_t>(tile), mark});
+    }
+  }
+  return bytes.empty();
+}
+
 }  // namespace
 
 void put_heights(StateWriter& file, const std::string& model, const TileGrid& grid,
@@ -79,16 +113,20 @@ Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& 
   return SavedHeights{{std::move(grid), head.blank_mm3}, rest};
 }
 
-Done write_state(const std::string& path, const TileGrid& grid, double blank_mm3) {
+Done write_state(const std::string& path, const TileGrid& grid, const WallMarks& marks,
+                 double blank_mm3) {
   Result<StateWriter> file = StateWriter::create(path);
   if (!file) return Error{file.error()};
   put_heights(*file, "zmap", grid, blank_mm3);
+  put_marks(*file, grid, marks);
   return file->commit();
 }
 
 Result<SavedState> parse_state(const std::string& bytes, const std::string& name) {
-  Result<SavedHeights> heights = parse_heights(bytes, name, "zmap", false);
+  Result<SavedHeights> heights = parse_heights(bytes, name, "zmap", true);
   if (!heights) return Error{heights.error()};
+  if (!take_marks(heights->rest, heights->state))
+    return Error{fmt::format("{}: the walls behind its heights are damaged", name)};
   return std::move(heights->state);
 }
 

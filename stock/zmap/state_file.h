@@ -6,21 +6,27 @@
 //   cells nx ny
 //   blank_mm3 v
 //   data
-// Then nx * ny IEEE float32, row by row (y outer): height in mm.
+// Then nx * ny IEEE float32, row by row (y outer): height in mm. Of a Z-map that knows where walls
+// stand between middles of cells, then for each tile of 64 x 64 cells, row by row: a uint32, how
+// many marks follow, and these, 8 bytes each (WallMark). Files without are of older versions, or
+// have no such walls.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "stock/state_bytes.h"
 #include "stock/zmap/tile_grid.h"
+#include "stock/zmap/wall_marks.h"
 
 namespace kerf {
 
 struct SavedState {
   TileGrid grid;
   double blank_mm3 = 0;
+  std::vector<PlacedMark> marks{};
 };
 
 /// Head and heights, with which the file of any model of heights begins.
@@ -34,7 +40,8 @@ struct SavedHeights {
 Result<SavedHeights> parse_heights(const std::string& bytes, const std::string& name,
                                    const std::string& model, bool goes_on);
 
-Done write_state(const std::string& path, const TileGrid& grid, double blank_mm3);
+Done write_state(const std::string& path, const TileGrid& grid, const WallMarks& marks,
+                 double blank_mm3);
 
 /// Errors name the file and what is wrong with it (not a kerf-state file, cut short at byte N,
 /// checksum). The size of what is allocated is bounded by the file's own size.

@@ -25,7 +25,7 @@
 #error "define KERF_LANES_NAMESPACE before including sweep_evals.h"
 #endif
 
-#include "stock/zmap/block_list.h"
+#include "stock/zmap/run_list.h"
 #include "stock/zmap/tool_lanes.h"
 
 namespace kerf::KERF_LANES_NAMESPACE {
@@ -79,6 +79,7 @@ inline double interior_width(const SweepContext& c) {
 
 template <class T, class Shape, Joint kJoint>
 struct StripEval {
+  static constexpr bool kRowsAlike = true;  ///< most of the work depends on v alone
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
@@ -146,8 +147,11 @@ struct StripEval {
     } else {
       rho = next.rho_like(contact, v2, unsure_next);
     }
-    const T d2 = a * a + v2;
     Mask between = (t >= length + overlap) & (u_next - rho <= all(0) - overlap);
+    // Narrow where a path is smooth: most blocks have none of it, and need no root.
+    if (!any(between)) [[likely]]
+      return all(kNowhere);
+    const T d2 = a * a + v2;
     if constexpr (!kInterior) {
       const T w2 = radius2 - d2;
       if constexpr (!kDouble) unsure = unsure | (between & (unsure_next | (abs(w2) <= band)));
@@ -159,6 +163,7 @@ struct StripEval {
 
 template <class T, class Shape>
 struct CapEval {
+  static constexpr bool kRowsAlike = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
@@ -185,6 +190,7 @@ struct CapEval {
 
 template <class T, class Shape>
 struct ArcEval {
+  static constexpr bool kRowsAlike = false;
   using S = typename T::Scalar;
   using Mask = typename T::Mask;
   static constexpr bool kDouble = sizeof(S) == sizeof(double);

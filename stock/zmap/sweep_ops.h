@@ -148,6 +148,15 @@ SweepKernel run_sweeps;
 namespace zmap_scalar_gaps {
 SweepKernel run_sweeps;
 }
+namespace zmap_vector {
+SweepKernel run_sweeps;
+}
+namespace zmap_vector_ids {
+SweepKernel run_sweeps;
+}
+namespace zmap_vector_gaps {
+SweepKernel run_sweeps;
+}
 namespace zmap_avx2_gaps {
 SweepKernel run_sweeps;
 }

@@ -89,60 +89,107 @@ struct StripBounds {
   }
 };
 
-/// Gives `out` every run of blocks that the strip can touch. Positions are taken from the block in
-/// which the strip starts, so that they stay small.
-[[gnu::noinline]] inline void walk_strip(const SweepContext& c, RunWriter& out) {
-  const SweepOp& op = c.op;
-  const GridView& g = c.grid;
-  const StripBounds bounds(c);
-  const double block_x = kBlockX * g.cell_x, block_y = kBlockY * g.cell_y;
-  const int home_i = floor_int((op.x - g.x0) * g.per_block_x);
-  const int home_j = floor_int((op.y - g.y0) * g.per_block_y);
-  const double ax = op.x - g.x0 - home_i * block_x, ay = op.y - g.y0 - home_j * block_y;
-  const auto all = [](double v) { return F8::all(static_cast<float>(v)); };
-  const F8 cos = all(op.cos), sin = all(op.sin), zero = F8::all(0), radius = F8::all(bounds.radius);
-  const F8 icos = F8::all(inverse_or_huge(op.cos)), isin = F8::all(inverse_or_huge(-op.sin));
-  const F8 side = F8::all(bounds.radius + bounds.half_v), half_v = F8::all(bounds.half_v);
-  const F8 first_column = all(-home_i), last_column = all((g.nx - 1) / kBlockX - home_i);
-  const bool is_short = c.is_short();
-  alignas(32) static constexpr float kLane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  for (int first = c.first_row; first <= c.last_row; first += 8) {
-    const F8 row = F8::all(static_cast<float>(first - home_j)) + F8::load(kLane);
-    const F8 y = row * all(block_y) + all(0.5 * block_y - ay);
+/// Rows of blocks of a strip, eight at a time: where each row's blocks begin, and how many there
+/// are. Positions are taken from the block in which the strip starts, so that they stay small.
+class StripRows {
+ public:
+  [[gnu::always_inline]] StripRows(const SweepContext& c, const RunWriter& out)
+      : bounds_(c),
+        cos_(static_cast<float>(c.op.cos)),
+        sin_(static_cast<float>(c.op.sin)),
+        icos_(inverse_or_huge(c.op.cos)),
+        isin_(inverse_or_huge(-c.op.sin)),
+        z_(static_cast<float>(c.op.z)),
+        slope_(static_cast<float>(c.op.slope)),
+        per_block_x_(static_cast<float>(c.grid.per_block_x)),
+        block_x_(static_cast<float>(kBlockX * c.grid.cell_x)),
+        block_y_(static_cast<float>(kBlockY * c.grid.cell_y)),
+        to_center_(out.to_center()),
+        step_q_(out.step_q()),
+        interior_(out.interior()) {
+    const GridView& g = c.grid;
+    home_i_ = floor_int((c.op.x - g.x0) * g.per_block_x);
+    home_j_ = floor_int((c.op.y - g.y0) * g.per_block_y);
+    const double block_x = kBlockX * g.cell_x, block_y = kBlockY * g.cell_y;
+    const double ax = c.op.x - g.x0 - home_i_ * block_x, ay = c.op.y - g.y0 - home_j_ * block_y;
+    first_column_ = static_cast<float>(-home_i_);
+    last_column_ = static_cast<float>((g.nx - 1) / kBlockX - home_i_);
+    center_y_ = static_cast<float>(0.5 * block_y - ay);
+    shift_ = static_cast<float>(ax * g.per_block_x - 0.5);
+    cell_x_ = static_cast<float>(0.5 * g.cell_x - ax);
+    cell_y_ = static_cast<float>(0.5 * g.cell_y - ay);
+  }
+
+  /// For rows first .. first + 7, one lane each: column of the first block, count (none if <= 0),
+  /// and (p, q, track, 0) of the first cell.
+  struct Found {
+    alignas(32) float begins[kRunsAtOnce], counts[kRunsAtOnce], starts[4 * kRunsAtOnce];
+    unsigned rows = 0, interior = 0;  ///< a bit a lane: there are blocks; all of them are interior
+  };
+  [[gnu::always_inline]] void find(int first, int lane, Found& found) const {
+    alignas(32) static constexpr float kLane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const auto all = [](float v) { return F8::all(v); };
+    const F8 zero = all(0), one = all(1), cos = all(cos_), sin = all(sin_);
+    const F8 row = all(static_cast<float>(first - home_j_)) + F8::load(kLane);
+    const F8 y = row * all(block_y_) + all(center_y_);
     const F8 y_sin = y * sin, y_cos = y * cos;
-    F8 low = F8::all(-1e9f), high = F8::all(1e9f);
-    clip(icos, y_sin, F8::all(bounds.lower), F8::all(bounds.upper), low, high);
-    clip(isin, y_cos, zero - side, side, low, high);
+    F8 low = all(-1e9f), high = all(1e9f);
+    clip(all(icos_), y_sin, all(bounds_.lower), all(bounds_.upper), low, high);
+    const F8 side = all(bounds_.radius + bounds_.half_v), half_v = all(bounds_.half_v);
+    clip(all(isin_), y_cos, zero - side, side, low, high);
     const F8 v1 = y_cos - low * sin, v2 = y_cos - high * sin;
     const F8 v_min = min(v1, v2) - half_v, v_max = max(v1, v2) + half_v;
+    const F8 radius = all(bounds_.radius);
     const F8 v_far = min(radius, max(zero - v_min, v_max));
     const F8 v_near = min(radius, max(zero, max(v_min, zero - v_max)));
     F8 u_low, u_high;
-    bounds.tighten(v_near, v_far, u_low, u_high);
-    clip(icos, y_sin, u_low, u_high, low, high);
-    // Block columns, relative to home_i: centres between low and high.
-    const F8 to_block = all(g.per_block_x), shift = all(ax * g.per_block_x - 0.5);
-    const F8 begin = zero - floor(zero - max(low * to_block + shift, first_column));
-    const F8 end = floor(max(min(high * to_block + shift, last_column), first_column - F8::all(1)));
-    const F8 x0 = min(begin, last_column) * all(block_x) + all(0.5 * g.cell_x - ax);
-    const F8 y0 = row * all(block_y) + all(0.5 * g.cell_y - ay);
+    bounds_.tighten(v_near, v_far, u_low, u_high);
+    clip(all(icos_), y_sin, u_low, u_high, low, high);
+    // Block columns, relative to home_i_: centres between low and high.
+    const F8 to_block = all(per_block_x_), shift = all(shift_);
+    const F8 begin = zero - floor(zero - max(low * to_block + shift, all(first_column_)));
+    const F8 end =
+        floor(max(min(high * to_block + shift, all(last_column_)), all(first_column_) - one));
+    const F8 x0 = min(begin, all(last_column_)) * all(block_x_) + all(cell_x_);
+    const F8 y0 = row * all(block_y_) + all(cell_y_);
     const F8 p0 = x0 * cos + y0 * sin;
-    const F8 q0 = y0 * cos - x0 * sin, count = end - begin + F8::all(1);
-    const F8 q_first = q0 + F8::all(out.to_center());
-    const F8 q_last = q_first + (count - F8::all(1)) * F8::all(out.step_q());
-    const unsigned interior = bits(max(abs(q_first), abs(q_last)) <= F8::all(out.interior()));
-    unsigned rows =
-        bits(count > zero) & ((2u << (c.last_row - first < 7 ? c.last_row - first : 7)) - 1);
-    alignas(32) float begins[8], counts[8], starts[32];
-    store(begins, begin + F8::all(static_cast<float>(home_i)));
-    store(counts, count);
-    store_rows(starts, p0, q0, all(op.z) + all(op.slope) * p0);
+    const F8 q0 = y0 * cos - x0 * sin, count = end - begin + one;
+    const F8 q_first = q0 + all(to_center_);
+    const F8 q_last = q_first + (count - one) * all(step_q_);
+    found.interior |= bits(max(abs(q_first), abs(q_last)) <= all(interior_)) << lane;
+    found.rows |= bits(count > zero) << lane;
+    store(found.begins + lane, begin + all(static_cast<float>(home_i_)));
+    store(found.counts + lane, count);
+    store_rows(found.starts + 4 * lane, p0, q0, all(z_) + all(slope_) * p0);
+  }
+
+ private:
+  StripBounds bounds_;
+  float cos_, sin_, icos_, isin_, z_, slope_;
+  float per_block_x_, block_x_, block_y_;
+  float to_center_, step_q_, interior_;
+  float first_column_, last_column_, center_y_, shift_, cell_x_, cell_y_;
+  int home_i_, home_j_;
+};
+
+/// Gives `out` every run of blocks that the strip can touch.
+[[gnu::noinline]] inline void walk_strip(const SweepContext& c, RunWriter& out) {
+  const StripRows strip(c, out);
+  const bool is_short = c.is_short();
+  for (int first = c.first_row; first <= c.last_row; first += kRunsAtOnce) {
+    const int left = c.last_row - first;
+    StripRows::Found found;
+    strip.find(first, 0, found);
+    if (left >= 8) strip.find(first + 8, 8, found);
+    unsigned rows = found.rows;
+    if (left < kRunsAtOnce - 1) rows &= (2u << left) - 1;
     if (is_short) out.make_room();
     for (; rows != 0; rows &= rows - 1) {
       const int lane = __builtin_ctz(rows);
-      const int b0 = static_cast<int>(begins[lane]), n = static_cast<int>(counts[lane]);
+      const int b0 = static_cast<int>(found.begins[lane]), n = static_cast<int>(found.counts[lane]);
       if (is_short)
-        out.add_short(first + lane, b0, n, starts + 4 * lane, (interior >> lane & 1) != 0);
+        out.add_short(first + lane, b0, n, found.starts + 4 * lane,
+                      (found.interior >> lane & 1) != 0);
       else
         out.add(first + lane, b0, b0 + n - 1);
     }
@@ -221,13 +268,12 @@ struct SingleSweep {
   SweepContext& c;
   Frame frame;
   EvalF eval;
-  WorkLists lists;
+  RunLists lists;
   explicit SingleSweep(SweepContext& context)
       : c(context), frame(frame_of(c.op)), eval(c.tool, c.op, c.extent()) {}
   static void flush(void* self) {
     SingleSweep& s = *static_cast<SingleSweep*>(self);
-    if (s.lists.interior.count > 0) work_off<EvalD, true>(s.c, s.lists.interior, s.frame, s.eval);
-    if (s.lists.edge.count > 0) work_off<EvalD, false>(s.c, s.lists.edge, s.frame, s.eval);
+    work_off<EvalD>(s.c, s.lists, s.frame, s.eval);
   }
 };
 
@@ -236,7 +282,7 @@ struct DoubleSweep {
   SweepContext& c;
   Frame frame;
   EvalD eval;
-  WorkLists lists;
+  RunLists lists;
   explicit DoubleSweep(SweepContext& context)
       : c(context), frame(frame_of(c.op)), eval(c.tool, c.op) {}
   static void flush(void* self) {
@@ -318,16 +364,19 @@ inline void run_all(GridView& grid, const ConvexTool& tool, const SweepOp* ops, 
                     int first_band, int band_step, SweepTotals* totals) {
   const double row_height = kBlockY * grid.cell_y;
   const int last_block_row = (grid.ny - 1) / kBlockY;
+  // The outer cells of a row of blocks lie half a cell within it.
+  const double inset = 0.5 / kBlockY;
   for (std::size_t n = 0; n < count; ++n) {
     const SweepOp& op = ops[n];
-    const double from = (op.min_y - tool.radius - 1e-3 - grid.y0) / row_height;
-    const double to = (op.max_y + tool.radius + 1e-3 - grid.y0) / row_height;
-    if (to < 0 || from >= last_block_row + 1) continue;
+    const double from = (op.min_y - tool.radius - 1e-3 - grid.y0) / row_height - (1 - inset);
+    const double to = (op.max_y + tool.radius + 1e-3 - grid.y0) / row_height - inset;
+    if (to < 0 || from > last_block_row) continue;
     if (op.max_x + tool.radius < grid.x0 ||
         op.min_x - tool.radius > grid.x0 + grid.nx * grid.cell_x)
       continue;
-    const int row0 = from <= 0 ? 0 : floor_int(from),
+    const int row0 = from <= 0 ? 0 : ceil_int(from),
               row1 = to >= last_block_row ? last_block_row : floor_int(to);
+    if (row0 > row1) continue;
     if (band_step == 1) {
       sweep_block_rows(grid, tool, op, row0, row1, totals);
       continue;

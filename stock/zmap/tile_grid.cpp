@@ -112,19 +112,23 @@ class TileArena {
   std::vector<float*> free_;
 };
 
-TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny)
+TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny, bool keeps_cut_ids)
     : bounds_(bounds_mm),
       nx_(nx),
       ny_(ny),
       tiles_x_((nx + kTileCells - 1) / kTileCells),
       tiles_y_((ny + kTileCells - 1) / kTileCells),
+      keeps_cut_ids_(keeps_cut_ids),
       meetings_(std::make_shared<std::atomic<unsigned>>(0)) {
   const std::size_t count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
   arena_ = std::make_shared<TileArena>(count, tile_bytes());
-  std::fill_n(arena_->first(0), count * kTileFloats, std::numeric_limits<float>::lowest());
   tiles_.reserve(count);
-  for (std::size_t i = 0; i < count; ++i)
-    tiles_.push_back(TileArena::share(arena_, arena_->first(i)));
+  for (std::size_t i = 0; i < count; ++i) {
+    float* const cells = arena_->first(i);
+    std::fill_n(cells, kTileFloats, std::numeric_limits<float>::lowest());
+    if (keeps_cut_ids) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
+    tiles_.push_back(TileArena::share(arena_, cells));
+  }
   versions_.resize(count);
   const std::vector<float> row(static_cast<std::size_t>(nx), floor_mm());
   for (int j = 0; j < ny; ++j) set_row(j, row.data());

@@ -20,8 +20,8 @@ class TileArena;
 /// floor and are never read by the functions here.
 class TileGrid {
  public:
-  /// Every cell at the floor (no material).
-  TileGrid(const Box& bounds_mm, int nx, int ny);
+  /// Every cell at the floor (no material); with numbers, as keep_cut_ids() has them.
+  TileGrid(const Box& bounds_mm, int nx, int ny, bool keeps_cut_ids = false);
   TileGrid(const TileGrid&) = default;
   ~TileGrid();
 

@@ -1,4 +1,4 @@
-// stock/zmap/work_off.h - from listed blocks to lowered cells.
+// stock/zmap/work_off.h - from listed runs of blocks to lowered cells.
 #pragma once
 
 #ifndef KERF_LANES_NAMESPACE
@@ -46,11 +46,17 @@ inline float max_lane(F8 a) {
   return top;
 }
 
+/// A block of a run.
+struct Block {
+  int column, bj;
+  float* cells;
+};
+
 /// Heights of a block in double precision.
 template <class EvalD>
 inline F8 evaluate_double(const SweepContext& c, const Frame& f, const Block& b, const EvalD& eval,
                           const BlockOffsets<D8>& offsets) {
-  const double x = c.center_x(b.column()), y = c.center_y(b.bj);
+  const double x = c.center_x(b.column), y = c.center_y(b.bj);
   const double p = x * f.cos + y * f.sin, q = y * f.cos - x * f.sin;
   MaskD ignored;
   return to_float(eval.template at<false>(D8::all(p) + offsets.p, D8::all(q) + offsets.q,
@@ -85,7 +91,7 @@ struct GapOpener {
       : grid(c.grid), report(c.op.report), thinnest(F8::all(c.grid.gaps.thinnest)) {}
   /// Of a block that has been lowered from `old` to `now`: what was removed of each cell.
   F8 removed(const Block& b, F8 old, F8 now) const {
-    const unsigned column = static_cast<unsigned>(b.column()), row = static_cast<unsigned>(b.bj);
+    const unsigned column = static_cast<unsigned>(b.column), row = static_cast<unsigned>(b.bj);
     const unsigned tile =
         row / kTileBlocksY * static_cast<unsigned>(grid.tiles_x) + column / kTileBlocksX;
     const float* const tops = grid.gaps.tops[tile];
@@ -138,53 +144,108 @@ struct Lowering {
 
 /// Blocks that single precision could not settle: few, so everything they need is made on the spot.
 template <class EvalD>
-[[gnu::noinline]] void settle(SweepContext& c, const WorkList& list, const Frame& f,
-                              const std::int16_t* blocks, int count) {
+[[gnu::noinline]] void settle(SweepContext& c, const Frame& f, const Block* blocks, int count) {
   const EvalD eval(c.tool, c.op);
   const BlockOffsets<D8> offsets(c.grid, f);
   Lowering lowering(c);
-  for (int n = 0; n < count; ++n) {
-    const Block& b = list.blocks[blocks[n]];
-    lowering.apply(b, evaluate_double(c, f, b, eval, offsets));
-  }
+  for (int n = 0; n < count; ++n)
+    lowering.apply(blocks[n], evaluate_double(c, f, blocks[n], eval, offsets));
   lowering.add_to(c);
 }
 
+/// Collects those blocks.
+template <class EvalD>
+class Unsettled {
+ public:
+  Unsettled(SweepContext& c, const Frame& f) : c_(c), frame_(f) {}
+  void add(const Block& block) {
+    blocks_[count_++] = block;
+    if (count_ == kMost) finish();
+  }
+  void finish() {
+    if (count_ > 0) settle<EvalD>(c_, frame_, blocks_, count_);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kMost = 64;
+  SweepContext& c_;
+  const Frame& frame_;
+  int count_ = 0;
+  Block blocks_[kMost];
+};
+
+/// Where the cells of a run are, block after block.
+template <bool kSameQ>
+struct RunPlace {
+  F8 p, q, track;
+  RunPlace(const Run& run) : p(F8::all(run.p)), q(F8::all(run.q)), track(F8::all(run.track)) {}
+  void advance(F8 step_p, F8 step_q, F8 step_track) {
+    p = p + step_p;
+    if constexpr (!kSameQ) q = q + step_q;
+    track = track + step_track;
+  }
+};
+
 /// Lowers the cells of the listed blocks to what `eval` says, in single precision where that is
-/// sure.
-template <class EvalD, bool kInterior, class EvalF>
-void work_off(SweepContext& c, WorkList& list, const Frame& f, const EvalF& eval_in_memory) {
+/// sure. kSameQ: for sweeps along X, whose blocks of one row all have the same q: what depends on
+/// that alone the compiler works out once a run.
+template <class EvalD, bool kInterior, bool kSameQ, class EvalF>
+[[gnu::always_inline]] inline void work_off(SweepContext& c, RunList& list, const Frame& f,
+                                            const EvalF& eval, const BlockOffsets<F8>& offsets,
+                                            Lowering& lowering) {
+  const RunStep step = run_step(c.grid, f);
+  const F8 step_p = F8::all(step.p), step_q = F8::all(step.q), step_track = F8::all(step.track);
+  [[maybe_unused]] Unsettled<EvalD> unsettled(c, f);
+  for (int n = 0; n < list.count; ++n) {
+    const Run& run = list.runs[n];
+    RunPlace<kSameQ> at(run);
+    Block b{run.bi, run.bj, run.cells};
+    const int end = b.column + run.count;
+    for (;;) {
+      MaskF unsure;
+      const F8 z = eval.template at<kInterior>(at.p + offsets.p, at.q + offsets.q,
+                                               at.track + offsets.track, unsure);
+      if (kInterior || !any(unsure)) [[likely]]
+        lowering.apply(b, z);
+      else
+        unsettled.add(b);
+      if (++b.column == end) break;
+      b.cells += kBlockFloats;
+      at.advance(step_p, step_q, step_track);
+    }
+  }
+  if constexpr (!kInterior) unsettled.finish();
+  list.clear();
+}
+
+/// Both lists.
+template <class EvalD, class EvalF>
+void work_off(SweepContext& c, RunLists& lists, const Frame& f, const EvalF& eval_in_memory) {
   const EvalF eval = eval_in_memory;  // nobody has its address: its constants stay in registers
   const BlockOffsets<F8> offsets(c.grid, f);
   Lowering lowering(c);
-  std::int16_t unsettled[WorkList::kCapacity];
-  int unsettled_count = 0;
-  for (int n = 0; n < list.count; ++n) {
-    const Block& b = list.blocks[n];
-    MaskF unsure;
-    const F8 z = eval.template at<kInterior>(F8::all(b.p) + offsets.p, F8::all(b.q) + offsets.q,
-                                             F8::all(b.track) + offsets.track, unsure);
-    if constexpr (!kInterior) {
-      if (any(unsure)) [[unlikely]] {
-        unsettled[unsettled_count++] = static_cast<std::int16_t>(n);
-        continue;
-      }
-    }
-    lowering.apply(b, z);
-  }
+  if (EvalF::kRowsAlike && f.sin == 0)
+    work_off<EvalD, true, EvalF::kRowsAlike>(c, lists.interior, f, eval, offsets, lowering);
+  else
+    work_off<EvalD, true, false>(c, lists.interior, f, eval, offsets, lowering);
+  work_off<EvalD, false, false>(c, lists.edge, f, eval, offsets, lowering);
   lowering.add_to(c);
-  if (unsettled_count > 0) settle<EvalD>(c, list, f, unsettled, unsettled_count);
-  list.count = 0;
 }
 
 template <class EvalD>
-void work_off_double(SweepContext& c, WorkList& list, const Frame& f, const EvalD& eval) {
+void work_off_double(SweepContext& c, RunList& list, const Frame& f, const EvalD& eval) {
   const BlockOffsets<D8> offsets(c.grid, f);
   Lowering lowering(c);
-  for (int n = 0; n < list.count; ++n)
-    lowering.apply(list.blocks[n], evaluate_double(c, f, list.blocks[n], eval, offsets));
+  for (int n = 0; n < list.count; ++n) {
+    const Run& run = list.runs[n];
+    for (int k = 0; k < run.count; ++k) {
+      const Block b{run.bi + k, run.bj, run.cells + kBlockFloats * k};
+      lowering.apply(b, evaluate_double(c, f, b, eval, offsets));
+    }
+  }
   lowering.add_to(c);
-  list.count = 0;
+  list.clear();
 }
 
 }  // namespace kerf::KERF_LANES_NAMESPACE

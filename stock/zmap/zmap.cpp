@@ -27,16 +27,9 @@
 #include "stock/zmap/tile_cut_ids.h"
 #include "stock/zmap/tile_grid.h"
 #include "stock/zmap/tile_patch.h"
+#include "stock/zmap/wall_marks.h"
 
 namespace kerf {
-
-bool zmap_has_avx2() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
 
 struct ZMap::Impl {
   HeightSweeper sweeper;
@@ -60,11 +53,13 @@ ZMap::~ZMap() = default;
 Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
   if (const auto& mesh = options.blank.mesh; mesh && mesh->body && !mesh->body->is_height_field())
     return Error{tr("a Z-map cannot hold it: the mesh has undercuts; models mmap and octree do")};
-  Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, tr("a Z-map"));
+  Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, tr("a Z-map"),
+                                          options.keeps_cut_ids);
   if (!grid) return Error{grid.error()};
   const double blank_mm3 = volume_of(*grid);
   auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
   impl->sweeper.follow_sides(options.blank);
+  impl->sweeper.keep_walls(options.blank.bodies);
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 
@@ -114,11 +109,13 @@ std::optional<PartGap> ZMap::part_gap(const Cutter& cutter, const CarriedPart& p
 }
 
 std::unique_ptr<StockModel> ZMap::snapshot() const {
+  impl_->sweeper.walls();  // once for both
   auto copy = std::make_unique<Impl>(*impl_);
   copy->sweeper.pool = std::make_shared<WorkerPool>(1);
   copy->seen.clear();
   std::vector<CutReport> ignored;
   copy->sweeper.finish(nullptr, ignored);
+  copy->sweeper.walls();  // before others may ask for them
   return std::unique_ptr<StockModel>(new ZMap(std::move(copy)));
 }
 
@@ -144,7 +141,9 @@ std::optional<std::uint32_t> ZMap::cut_id_at(const Vec3& point_mm) const {
   return id == MeshPatch::kNotCut ? std::nullopt : std::optional(id);
 }
 
-std::size_t ZMap::unique_bytes() const { return impl_->grid().unique_bytes(); }
+std::size_t ZMap::unique_bytes() const {
+  return impl_->grid().unique_bytes() + impl_->sweeper.walls().unique_bytes();
+}
 
 Box ZMap::bounds_mm() const { return impl_->grid().bounds_mm(); }
 double ZMap::cell_mm() const {
@@ -173,7 +172,8 @@ std::string ZMap::digest() const { return hash_of(impl_->grid()).text(); }
 
 TriangleMesh ZMap::mesh(double tolerance_mm) const {
   const std::vector<float> heights = heights_mm();
-  return mesh_height_grid({nx(), ny(), bounds_mm(), heights}, tolerance_mm,
+  const std::vector<CellStep> steps = cell_steps(impl_->grid(), impl_->sweeper.walls());
+  return mesh_height_grid({nx(), ny(), bounds_mm(), heights, steps}, tolerance_mm,
                           impl_->sweeper.pool->threads());
 }
 
@@ -229,7 +229,7 @@ std::unique_ptr<SparseSurface> ZMap::sparse_surface(const SparseOptions& options
 }
 
 Done ZMap::save(const std::string& path) const {
-  return write_state(path, impl_->grid(), impl_->blank_mm3);
+  return write_state(path, impl_->grid(), impl_->sweeper.walls(), impl_->blank_mm3);
 }
 
 Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, ZMapKernel kernel) {
@@ -241,6 +241,9 @@ Result<std::unique_ptr<ZMap>> ZMap::load(const std::string& path, int threads, Z
 std::unique_ptr<ZMap> ZMap::of_heights(SavedState heights, int threads, ZMapKernel kernel) {
   auto impl = std::make_unique<Impl>(std::move(heights.grid), heights.blank_mm3, kernel, threads);
   impl->sweeper.forget_traces();
+  impl->sweeper.keep_walls();
+  for (const PlacedMark& placed : heights.marks)
+    impl->sweeper.walls().add(placed.tile, placed.mark, impl->grid());
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 

@@ -22,15 +22,19 @@ struct SavedState;
 
 struct ZMapOptions {
   Blank blank;           ///< bodies, workpiece frame
-  double cell_mm = 0.1;  ///< greatest edge of a cell: the true edges divide the blank evenly. Sets
-                         ///< the accuracy of vertical walls: cell / 2
+  double cell_mm = 0.1;  ///< greatest edge of a cell: the true edges divide the blank evenly
   int threads = 1;       ///< cutting threads, >= 1
   ZMapKernel kernel = ZMapKernel::kAuto;
+  bool keeps_cut_ids = false;  ///< StockModel::keep_cut_ids(), from the beginning
 };
 
 /// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no
 /// undercuts. Reads no files, knows no GL. A cell whose height is the floor holds no material.
-/// Source: one-dexel case of T. Van Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
+/// Where upright walls stand between the middles of cells is known to 1/512 of a cell
+/// (wall_marks.h): mesh() and save() have it. All else goes by cells: volumes (so that what moves
+/// remove adds up to what is gone), patches, contacts; and digest(), from which walls do not
+/// follow, though both follow from the same cuts, in any order. Source: one-dexel case of T. Van
+/// Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
 class ZMap final : public StockModel,
                    public PresentHeights,
                    public ColumnSource,

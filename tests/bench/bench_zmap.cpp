@@ -3,8 +3,8 @@
 //   bench_zmap [--program FILE.ngc|FILE.canon --stock SPEC --tool SHAPE] [--cell MM] [--runs N]
 //
 // Without a program: the generated workloads (workloads.h), run through rs274. For each: cutting
-// with one thread and with all, AVX2 and scalar kernel, with and without a note of which move cut
-// each cell; CPU seconds and wall seconds as minimum and median of N runs (default 5).
+// with one thread and with all, by each kernel of the machine, with and without a note of which
+// move cut each cell; CPU seconds and wall seconds as minimum and median of N runs (default 5).
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
@@ -169,18 +169,18 @@ void time_job(const Job& job, double cell_mm, int runs) {
   std::string digest;
   const int all = std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
   struct Variant {
-    const char* name;
     ZMapKernel kernel;
     int threads;
     bool cut_ids;
   };
-  for (const Variant& v : {Variant{"avx2", ZMapKernel::kAvx2, 1, false},
-                           {"avx2", ZMapKernel::kAvx2, 1, true},
-                           {"avx2", ZMapKernel::kAvx2, all, false},
-                           {"avx2", ZMapKernel::kAvx2, all, true},
-                           {"scalar", ZMapKernel::kScalar, 1, false},
-                           {"scalar", ZMapKernel::kScalar, 1, true}}) {
-    if (v.kernel == ZMapKernel::kAvx2 && !zmap_has_avx2()) continue;
+  std::vector<Variant> variants;
+  for (const ZMapKernel kernel : zmap_kernels()) {
+    for (const int threads : {1, all}) {
+      if (threads > 1 && kernel != zmap_kernels().front()) continue;
+      for (const bool cut_ids : {false, true}) variants.push_back({kernel, threads, cut_ids});
+    }
+  }
+  for (const Variant& v : variants) {
     std::vector<double> cpu, wall;
     std::size_t cells = 0;
     for (int run = 0; run < runs; ++run) {
@@ -208,7 +208,7 @@ void time_job(const Job& job, double cell_mm, int runs) {
     fmt::print(
         "  {:<26} CPU {:.4f} s min, {:.4f} median   wall {:.4f} min, {:.4f} median   "
         "{:.3g} moves/s CPU\n",
-        fmt::format("{}, {} thread{}{}", v.name, v.threads, v.threads == 1 ? "" : "s",
+        fmt::format("{}, {} thread{}{}", to_string(v.kernel), v.threads, v.threads == 1 ? "" : "s",
                     v.cut_ids ? ", cut ids" : ""),
         best, median(cpu), *std::min_element(wall.begin(), wall.end()), median(wall),
         static_cast<double>(moves.size()) / best);

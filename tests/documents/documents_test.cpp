@@ -97,9 +97,9 @@ std::size_t characters(const std::string& utf8) {
 }
 
 constexpr const char* kLongOption = R"((?:^|[\s,\[`(])(--[a-z][a-z0-9-]+))";
-const char* const kCommands[] = {"run",   "view",   "shadow", "replay",  "canon",
-                                 "setup", "config", "tools",  "models",  "sources",
-                                 "diff",  "batch",  "job",    "optimize"};
+const char* const kCommands[] = {"run",   "view",   "shadow", "replay",   "canon",
+                                 "setup", "config", "tools",  "models",   "sources",
+                                 "diff",  "batch",  "job",    "optimize", "mcp"};
 
 Words options_of(const std::string& command) {
   const CommandResult help = run_kerf(command + " --help");

@@ -58,6 +58,47 @@ TEST(InterpreterDiagnostic, CodesOfOtherControls) {
   }
 }
 
+/// The hint at a block that LinuxCNC refuses with these words.
+std::string hint_of(const std::string& block, const std::string& message) {
+  const TestFolder folder;
+  const std::string main = folder.write("main.ngc", block + "\n");
+  return interpreter_diagnostic(message + "\nN1" + block + "\n", {main}, {0, 1}, 1).hint;
+}
+
+TEST(InterpreterDiagnostic, ReferenceMovesOfOtherControls) {
+  const std::string two = "Cannot use two g codes that both use axis values";
+  const std::string wanted = "G28 and G30 traverse by themselves: no G0 or G1 in their block";
+  for (const char* block : {"G0 G91 G28 Z0", "N100G28G91G0Z0", "g0 g 30 Z0", "(home) G00 G28 Z0"})
+    EXPECT_EQ(hint_of(block, two), wanted) << block;
+  for (const char* block :
+       {"G0 G92 X0", "G0 G28.1 X0 G92", "G1 G10 L2 (G28)", "G0 G280", "G28 G92 X0"})
+    EXPECT_EQ(hint_of(block, two), "") << block;
+}
+
+TEST(InterpreterDiagnostic, CentresThatArePlaces) {
+  // Start (-40,50), end (-30,40): from the place (-40,40) both are 10.
+  const std::string fits =
+      "Radius to end of arc differs from radius to start: start=(X-40.0000,Y50.0000) "
+      "center=(X-80.0000,Y90.0000) end=(X-30.0000,Y40.0000) r1=56.5685 r2=70.7107 abs_err=14.14 "
+      "rel_err=20.0000%";
+  EXPECT_EQ(hint_of("G3 X-30. Y40. I-40 J40.", fits),
+            "as a place, and not from the arc's start, the centre fits: G90.1 says so");
+  // The same with an end (-30,41): neither.
+  std::string off = fits;
+  off.replace(off.find("Y40.0000"), 8, "Y41.0000");
+  EXPECT_EQ(hint_of("G3 X-30. Y41. I-40 J40.", off), "");
+  EXPECT_EQ(hint_of("G3 X-30.", "Radius to end of arc differs from radius to start"), "");
+}
+
+TEST(InterpreterDiagnostic, DwellsAndPlanesOfOtherControls) {
+  const std::string dwell = "P word with no G2 G3 G4 G10 G64 G5 G5.2 G76 G82 to use it";
+  EXPECT_EQ(hint_of("G83 X1 Z-5 R2 P500 Q2", dwell),
+            "LinuxCNC dwells at the bottom of G82, G86, G88 and G89 only: no P here");
+  EXPECT_EQ(hint_of("G1 X1 P500", dwell), "");
+  EXPECT_EQ(hint_of("G3 X1 Z-1 I0 K-1", "K word given for arc in xy plane"),
+            "an arc of X and Z lies in G18");
+}
+
 TEST(InterpreterDiagnostic, MissingEndIsAWarning) {
   const Diagnostic said = interpreter_diagnostic(
       "executing\nFile ended with no percent sign or program end\nN4G0 X1\n", {"a.ngc"}, {0, 4}, 4);

@@ -40,7 +40,8 @@ class ServedWatch:
                 break
 
     def finish(self):
-        """The report's section of the watch."""
+        """Ends the watch, as Ctrl-C does; the report's section of it."""
+        self.shadow.send_signal(signal.SIGINT)
         self.said.append(self.shadow.communicate(timeout=180)[1])
         return json.loads(self.report.read_text())["live"]
 

@@ -49,6 +49,8 @@ TEST(ToolHints, CamBam) {
   EXPECT_EQ(mm(" T1 : 3.175 "), "cambam T1 flat:3.175 guessed");
   EXPECT_EQ(inch("T0 : 0.125"), "cambam T0 flat:3.175 guessed");
   EXPECT_EQ(mm("T0 : 0.0"), "");
+  EXPECT_EQ(inch("T0 : 0.001"), "") << "a placeholder";
+  EXPECT_EQ(mm("T1 : 0.05"), "cambam T1 flat:0.05 guessed");
 }
 
 TEST(ToolHints, Pcb2Gcode) {

@@ -83,7 +83,9 @@ int solid_by_hand(const Vec3& p, double near_mm) {
   return f < 0 ? 1 : 0;
 }
 
-const double kPocket_mm3 = (12 * 10 - (4 - kPi) * 4) * 8;
+/// Between two lanes, 2 mm from each other, a cusp is left at either end.
+const double kCusp_mm2 = 4 - std::sqrt(3.0) - 4 * kPi / 6;
+const double kPocket_mm3 = (12 * 10 - (4 - kPi) * 4 - 6 * kCusp_mm2) * 8;
 const double kLeft_mm3 = 40 * 30 * 20 - kPocket_mm3 - 4 * 40 * 20;
 
 TEST(Placement, turns_flips_and_finds_itself_by_three_points) {

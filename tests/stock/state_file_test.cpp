@@ -100,10 +100,14 @@ TEST_F(StateFile, SaysWhatIsWrong) {
   EXPECT_EQ(fault("kerf-state/1\nmodel zmap\nx"), "part.state: the head is damaged near byte 24");
   EXPECT_EQ(fault("kerf-state/1\nmodel octree\n"),
             "part.state: a workpiece of the model octree, not of zmap");
+  const std::size_t heights = bytes.find("\ndata\n") + 6 + 7 * 4 * sizeof(float) + 16;
+  ASSERT_GT(bytes.size(), heights);  // walls follow
+  EXPECT_EQ(fault(bytes.substr(0, heights - 1)), "part.state: " + std::to_string(heights - 1) +
+                                                     " bytes long, but 7 x 4 cells need at least " +
+                                                     std::to_string(heights) +
+                                                     ": the file is cut short");
   EXPECT_EQ(fault(bytes.substr(0, bytes.size() - 1)),
-            "part.state: " + std::to_string(bytes.size() - 1) +
-                " bytes long, but 7 x 4 cells need " + std::to_string(bytes.size()) +
-                ": the file is cut short");
+            "part.state: the checksum does not match: the file is damaged or cut short");
   std::string damaged = bytes;
   damaged[bytes.size() - 20] ^= 1;
   EXPECT_EQ(fault(damaged),

@@ -187,10 +187,11 @@ TEST(ZMapBits, DoNotDependOnThreadsKernelOrBatching) {
     const auto reference_reports = cut_all(*reference, *cutter, moves);
     ASSERT_EQ(reference_reports.size(), moves.size());
     EXPECT_LT(reference->remaining_mm3(), 0.95 * reference->blank_mm3());
-    for (const ZMapKernel kernel : {ZMapKernel::kScalar, ZMapKernel::kAuto}) {
+    for (const ZMapKernel kernel : zmap_kernels()) {
+      SCOPED_TRACE(to_string(kernel));
       for (const int threads : {1, 2, 3, 7}) {
         for (const std::size_t batch : {std::size_t{0}, std::size_t{1}, std::size_t{13}}) {
-          if (kernel == ZMapKernel::kScalar && threads > 2) continue;
+          if (kernel != zmap_kernels().front() && threads > 2) continue;
           const auto map = make_map(blank, 0.1, threads, kernel);
           const auto reports = cut_all(*map, *cutter, moves, batch);
           EXPECT_EQ(map->digest(), reference->digest()) << threads << " threads, batch " << batch;
@@ -204,6 +205,61 @@ TEST(ZMapBits, DoNotDependOnThreadsKernelOrBatching) {
       }
     }
   }
+}
+
+/// Along X, where a row of cells has its roots but once, beside moves that turn a little, and
+/// steep.
+TEST(ZMapBits, OfRastersDoNotDependOnTheKernel) {
+  for (const char* shape : {"ball:6", "flat:5", "bull:6:1"}) {
+    SCOPED_TRACE(shape);
+    const auto cutter = parse_shape(shape);
+    std::vector<CutMove> moves;
+    for (const double tilt : {0.0, 1e-9, 0.02}) {
+      Vec3 at(-2, 3 + 300 * tilt, -4);
+      for (int n = 0; n < 150; ++n) {
+        const double along = n % 2 == 0 ? 0.31 : 2.7;
+        const Vec3 to = at + Vec3(along / 5, tilt * along, 0.3 * std::sin(0.4 * n) * along / 5);
+        moves.push_back(line(at, to));
+        at = to;
+      }
+    }
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i].id = i;
+    const auto reference = make_map("box:0,0,-10:40,40,0", 0.1, 1, ZMapKernel::kScalar);
+    const auto expected = cut_all(*reference, *cutter, moves);
+    EXPECT_LT(reference->remaining_mm3(), 0.99 * reference->blank_mm3());
+    for (const ZMapKernel kernel : zmap_kernels()) {
+      SCOPED_TRACE(to_string(kernel));
+      const auto map = make_map("box:0,0,-10:40,40,0", 0.1, 1, kernel);
+      const auto reports = cut_all(*map, *cutter, moves, 7);
+      EXPECT_EQ(map->digest(), reference->digest());
+      ASSERT_EQ(reports.size(), expected.size());
+      for (std::size_t i = 0; i < reports.size(); ++i)
+        ASSERT_EQ(reports[i].removed_mm3, expected[i].removed_mm3) << i;
+    }
+  }
+}
+
+TEST(ZMapKernels, AutoIsTheFirstOfThoseThatTheMachineRuns) {
+  const std::vector<ZMapKernel> kernels = zmap_kernels();
+  EXPECT_EQ(kernels.back(), ZMapKernel::kScalar);
+  EXPECT_TRUE(zmap_can_run(ZMapKernel::kAuto));
+  std::string names;
+  for (const ZMapKernel kernel : kernels) {
+    EXPECT_TRUE(zmap_can_run(kernel));
+    names += (names.empty() ? "" : ",") + std::string(to_string(kernel));
+  }
+  if (const char* const expected = std::getenv("KERF_KERNELS_EXPECTED"); expected != nullptr) {
+    EXPECT_EQ(names, expected);
+    return;
+  }
+#if defined(__x86_64__)
+  EXPECT_EQ(names, __builtin_cpu_supports("avx2") ? "avx2,sse2,scalar" : "sse2,scalar");
+  EXPECT_FALSE(zmap_can_run(ZMapKernel::kNeon));
+#elif defined(__aarch64__)
+  EXPECT_EQ(names, "neon,scalar");
+  EXPECT_FALSE(zmap_can_run(ZMapKernel::kSse2));
+  EXPECT_FALSE(zmap_can_run(ZMapKernel::kAvx2));
+#endif
 }
 
 TEST(ZMapBits, AskingInTheMiddleChangesNothing) {

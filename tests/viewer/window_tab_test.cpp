@@ -118,6 +118,56 @@ TEST_F(WindowTabTest, KeysGoToTheProgramAroundIt) {
   EXPECT_TRUE(turn_until([&] { return (keys += screen.keys()) >= 3; })) << keys;
 }
 
+/// The keyboard is LinuxCNC's: what is to be written is clicked.
+TEST_F(WindowTabTest, ABlankIsWrittenByClicks) {
+  Container screen(1280, 800);
+  open_in(screen.id());
+  expect_size(1280, 800);
+  ViewedJob job;
+  job.program = "/somewhere/part.ngc";
+  job.stock = "box:0,0,-5:10,10,0";
+  job.models = {"auto"};
+  job.fixtures = {"vise:100:60:30"};
+  SceneUpdate update;
+  update.job = std::make_shared<const ViewedJob>(job);
+  mailbox_.publish(std::move(update));
+  settle();
+  click(1137, 225);  // the job's tab
+  settle();
+  const Picture without = window_->read();
+  click(1100, 270);  // the blank's field
+  settle();
+  const Picture with_keys = window_->read();
+  EXPECT_GT(mean_difference(without, with_keys, kInfo), 1.0) << "there are keys";
+  for (const auto& [x, y] : {std::pair(1094, 431), {1028, 302}, {1259, 302}, {1237, 431}}) {
+    click(x, y);  // back, 2, 0, OK
+    settle();
+  }
+  const auto asked = next<JobCommand>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->stock, "box:0,0,-5:10,10,20");
+  EXPECT_EQ(asked->fixtures, std::vector<std::string>{"vise:100:60:30"});
+  EXPECT_EQ(mean_difference(without, window_->read(), {980, 290, 1280, 470}), 0.0)
+      << "the keys are gone";
+}
+
+/// AXIS's tab, as wide as it is at first, has no room for the panel beside the picture.
+TEST_F(WindowTabTest, WhereItIsNarrowTheInfoPanelComesByAButton) {
+  Container screen(400, 470);
+  open_in(screen.id());
+  expect_size(400, 470);
+  settle();
+  constexpr PixelBox panel{110, 60, 390, 370};
+  const Picture without = window_->read();
+  click(25, 16);
+  settle();
+  const Picture with = window_->read();
+  EXPECT_GT(mean_difference(without, with, panel), 50.0) << "dark, in the place of the scene";
+  click(25, 16);
+  settle();
+  EXPECT_LT(mean_difference(without, window_->read(), panel), 1.0);
+}
+
 TEST_F(WindowTabTest, EndsWithTheWindowAroundIt) {
   Container screen(900, 600);
   open_in(screen.id());

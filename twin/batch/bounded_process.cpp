@@ -20,17 +20,24 @@ namespace {
 
 constexpr int kExecFailed = 127;
 
+void limit(decltype(RLIMIT_DATA) resource, double mb) {
+  if (mb <= 0) return;
+  const auto bytes = static_cast<rlim_t>(mb * 1024 * 1024);
+  const rlimit both{bytes, bytes};
+  setrlimit(resource, &both);
+}
+
 /// Between fork() and exec(): nothing here allocates.
 [[noreturn]] void become(char* const* arguments, int said_fd, const ProcessBounds& bounds,
-                         pid_t parent) {
+                         pid_t parent, const sigset_t& mask) {
+  // What this process ignores, the new one would ignore, too; and its handlers are not for a child.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) signal(number, SIG_DFL);
+  sigprocmask(SIG_SETMASK, &mask, nullptr);
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kExecFailed);
-  if (bounds.memory_mb > 0) {
-    const auto bytes = static_cast<rlim_t>(bounds.memory_mb * 1024 * 1024);
-    const rlimit limit{bytes, bytes};
-    setrlimit(RLIMIT_DATA, &limit);
-  }
+  limit(RLIMIT_DATA, bounds.memory_mb);
+  limit(RLIMIT_FSIZE, bounds.file_mb);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   const int none = open("/dev/null", O_RDONLY);
@@ -38,8 +45,6 @@ constexpr int kExecFailed = 127;
       dup2(said_fd, STDERR_FILENO) < 0) {
     _exit(kExecFailed);
   }
-  // What this process ignores, the new one would ignore, too.
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) signal(number, SIG_DFL);
   execv("/proc/self/exe", arguments);
   _exit(kExecFailed);
 }
@@ -61,9 +66,14 @@ Result<BoundedProcess> BoundedProcess::start(const std::vector<std::string>& wor
   BoundedProcess process;
   process.begun_ = Clock::now();
   const pid_t parent = getpid();
+  // Until the child has no handlers any more: what they write would reach this process.
+  sigset_t all, mask;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &mask);
   process.pid_ = fork();
-  if (process.pid_ == 0) become(arguments.data(), said_fd, bounds, parent);
+  if (process.pid_ == 0) become(arguments.data(), said_fd, bounds, parent, mask);
   const int error = errno;
+  pthread_sigmask(SIG_SETMASK, &mask, nullptr);
   close(said_fd);
   errno = error;
   if (process.pid_ < 0) return refused("fork");

@@ -18,6 +18,7 @@ struct ProcessBounds {
   /// What each process may allocate for writing (RLIMIT_DATA: heap, stacks, private maps of memory;
   /// not code, not files that are mapped), so kerf and the interpreter that it starts for itself.
   double memory_mb = 0;
+  double file_mb = 0;  ///< of each file that it writes (RLIMIT_FSIZE)
 };
 
 struct ProcessEnd {

@@ -12,8 +12,8 @@ namespace kerf {
 namespace {
 
 /// What CLI11 says of its own in a help.
-constexpr std::array kLabels{tr_noop("Usage"),       tr_noop("Positionals"), tr_noop("OPTIONS"),
-                             tr_noop("Subcommands"), tr_noop("SUBCOMMAND"),  tr_noop("REQUIRED")};
+constexpr std::array kLabels{tr_noop("Usage"), tr_noop("Positionals"), tr_noop("OPTIONS"),
+                             tr_noop("SUBCOMMAND"), tr_noop("REQUIRED")};
 
 void add_option(CLI::App& app, const Setting& setting, WrittenOptions::Slot& slot) {
   const std::string shorter(setting.short_name);
@@ -56,8 +56,8 @@ std::vector<std::string> with_bare_options(std::vector<std::string> words) {
 }
 
 void speak_language(CLI::App& app, const std::string& version) {
-  app.set_help_flag("-h,--help", tr("print this help"));
   app.option_defaults()->group(tr("Options"));
+  app.set_help_flag("-h,--help", tr("print this help"));
   const std::shared_ptr<CLI::Formatter> formatter = std::make_shared<CLI::Formatter>();
   for (const char* const label : kLabels) formatter->label(label, tr(label));
   app.formatter(formatter);

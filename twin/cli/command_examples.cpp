@@ -92,6 +92,11 @@ constexpr const char* kToolsExample =
     "  kerf tools --inserts\n"
     "  kerf tools shop.json\n";
 
+constexpr const char* kMcpExample = tr_noop(
+    "A client starts it, and speaks with it on standard input and output.\n\n"
+    "Example:\n"
+    "  kerf mcp --folder ~/linuxcnc/nc_files\n");
+
 }  // namespace
 
 const char* examples_of_kerf() { return kExamples; }
@@ -128,6 +133,8 @@ const char* examples_of(Command command) {
       return "Example:\n  kerf sources\n";
     case kTools:
       return kToolsExample;
+    case kMcp:
+      return kMcpExample;
     default:
       return "";
   }

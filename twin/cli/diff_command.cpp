@@ -65,7 +65,9 @@ CutSide cut_program(const DiffRequest& request, const std::stop_token& stop) {
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   out.side.path = request.run.session.program.path;
-  out.session = Session::open(request.run.session, diagnostics, outcome);
+  SessionOptions options = request.run.session;
+  options.stock.keeps_cut_ids = true;
+  out.session = Session::open(std::move(options), diagnostics, outcome);
   print_diagnostics(diagnostics, request.run.quiet);
   if (!out.session) {
     out.code = end_code(outcome, diagnostics);

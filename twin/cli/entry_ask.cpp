@@ -99,8 +99,13 @@ void EntryAsk::forget() {
   answer({});
 }
 
+void EntryAsk::refuse(int line, std::string why) {
+  thread_ = {};
+  answer(in_trouble(line, std::move(why)));
+}
+
 void EntryAsk::ask(int line, const std::string& program, const WrittenOptions& options,
-                   LengthUnit unit) {
+                   LengthUnit unit, std::shared_ptr<const StockModel> now) {
   thread_ = {};  // stops and joins it
   EntryAnswer waiting;
   waiting.line = line;
@@ -108,10 +113,16 @@ void EntryAsk::ask(int line, const std::string& program, const WrittenOptions& o
   answer(std::move(waiting));
   std::vector<std::string> words{"run"};
   for (std::string& word : run_words(options)) words.push_back(std::move(word));
-  thread_ = std::jthread([this, line, program, unit, words](const std::stop_token& stop) {
+  thread_ = std::jthread([this, line, program, unit, words, now](const std::stop_token& stop) {
     Result<PrivateFolder> folder = PrivateFolder::create();
     if (!folder) return answer(in_trouble(line, folder.error()));
     std::vector<std::string> all = words;
+    if (now) {
+      const std::string state = folder->path() + "/now.state";
+      if (const Done saved = now->save(state); !saved)
+        return answer(in_trouble(line, saved.error()));
+      all.push_back("--stock=state:" + state);
+    }
     all.insert(all.end(), {"--quiet", "--enter", fmt::format("--from-line={}", line),
                            "--json=" + folder->path() + "/report.json", program});
     if (auto told = run_of(line, all, folder->path(), unit, stop)) answer(std::move(*told));

@@ -1,10 +1,12 @@
 // twin/cli/entry_ask.h - what a start at a line would miss and meet, asked for in the window.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "stock/stock_model.h"
 #include "twin/config/written_options.h"
 #include "twin/report/shown_lengths.h"
 #include "viewer/scene_mailbox.h"
@@ -23,8 +25,11 @@ class EntryAsk {
   EntryAsk& operator=(const EntryAsk&) = delete;
 
   /// The question before this one is dropped. `options`: of the window; what `kerf run` has, too,
-  /// is passed on.
-  void ask(int line, const std::string& program, const WrittenOptions& options, LengthUnit unit);
+  /// is passed on. `now`: not null: the workpiece as it is, in place of its blank.
+  void ask(int line, const std::string& program, const WrittenOptions& options, LengthUnit unit,
+           std::shared_ptr<const StockModel> now = nullptr);
+  /// It cannot be told, and why.
+  void refuse(int line, std::string why);
   /// No answer comes any more: it would be about what is not shown now.
   void forget();
 

@@ -343,6 +343,7 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
     }
   };
   if (around.loaded->state().program.empty()) tell(waiting);
+  around.window->publish_job();
   while (!stop.stop_requested()) {
     const double passed_s = std::chrono::duration<double>(LiveClock::now() - begun).count();
     if (for_s > 0 && passed_s > for_s) break;
@@ -358,6 +359,9 @@ int wait_for_program(SharedSource& shared, const Surroundings& around, double fo
     for (const ViewerCommand& command : around.window->commands().take()) {
       if (std::holds_alternative<CloseCommand>(command) && !around.window->lost) {
         stop.request_stop();
+      }
+      if (const auto* const job = std::get_if<JobCommand>(&command)) {
+        if (const std::string said = around.window->set_up(*job); !said.empty()) tell(said);
       }
     }
   }
@@ -382,10 +386,12 @@ int watch_rounds(LiveRequest& request, std::unique_ptr<PositionSource> source,
   }
   if (shared && !request.kerf_status.empty()) {
     loaded.emplace(
-        request.kerf_status, request.nml_file, window.options(),
+        request.kerf_status, request.nml_file,
+        [&window](const std::string& program) { return window.options_of(program); },
         [&shared] { return shared->is_running.load(); },
         [&window](const std::string& program) { return window.follow(program); });
     around.loaded = &*loaded;
+    window.edit_setups([&loaded] { loaded->look_again(); });
   }
   while (true) {
     int code = kExitGood;

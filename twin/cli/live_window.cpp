@@ -9,12 +9,15 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "stock/cutter/shape_spec.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
 #include "twin/cli/file_watch.h"
 #include "twin/cli/view_load.h"
 #include "twin/config/make_source.h"
+#include "twin/job/stock_choice.h"
 #include "twin/playback/load_program.h"
+#include "twin/report/shown_lengths.h"
 #include "twin/scene/drawn_machine.h"
 #include "twin/scene/player_scene.h"
 #include "twin/scene/turned_look.h"
@@ -22,12 +25,15 @@
 namespace kerf {
 namespace {
 
+/// A place that is older may be left by now.
+constexpr double kOldPlace_s = 2;
 /// Of what is wrong with a log the window tells the first.
 constexpr std::size_t kFaultsShown = 8;
 
 /// The path, text and times of the program beside the machine. What is wrong with it, the session
 /// says.
-std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::stop_token stop) {
+std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::stop_token stop,
+                                               std::vector<JobTool>& used) {
   SessionOptions options;
   options.program = *request.options.program;
   options.tools = request.options.tools;
@@ -45,6 +51,9 @@ std::unique_ptr<LiveProgram> load_live_program(const LiveRequest& request, std::
   program->track = loaded->player.track;
   program->files = shown.files;
   program->tools = shown.tools;
+  for (const ProgramTool& tool : loaded->tools) {
+    used.push_back({tool.number, "", shape_in(tool.shape, shown_unit()), tool.origin});
+  }
   return program;
 }
 
@@ -56,6 +65,15 @@ std::vector<std::string> faults_of(const Diagnostics& diagnostics) {
     faults.push_back(text.substr(0, text.find('\n')));
   }
   return faults;
+}
+
+/// As --stock takes it.
+std::string text_of(const Box& box, LengthUnit unit) {
+  const auto corner = [unit](const Vec3& mm) {
+    return fmt::format("{:.4g},{:.4g},{:.4g}", from_mm(mm.x, unit), from_mm(mm.y, unit),
+                       from_mm(mm.z, unit));
+  };
+  return fmt::format("box:{}:{}", corner(box.min), corner(box.max));
 }
 
 }  // namespace
@@ -76,6 +94,7 @@ LiveWindow::LiveWindow(SceneMailbox& mailbox, CommandQueue& commands, Arguments 
       commands_(commands),
       command_(arguments.command),
       is_shown_(is_shown),
+      written_(arguments.options),
       arguments_(std::move(arguments)) {}
 
 void LiveWindow::serve(std::function<void()> on_start) { on_start_ = std::move(on_start); }
@@ -84,14 +103,103 @@ ViewedJob LiveWindow::job() const {
   ViewedJob job;
   job.program = arguments_.options.text("LOG");
   job.command = command_line(arguments_.words);
-  job.is_fixed = true;
+  const bool is_edited = on_set_ && arguments_.options.has("--program");
+  job.is_fixed = !is_edited;
   job.can_open = command_ == kReplay;
+  job.can_enter = can_enter();
+  if (!is_edited) return job;
+  const ProgramSetup setup = setup_of(arguments_.options);
+  job.program = arguments_.options.text("--program");
+  job.stock = setup.stock;
+  if (!blank_mm_.empty()) job.stock_in_use = text_of(blank_mm_, shown_unit());
+  job.cell = setup.cell;
+  job.model = setup.model;
+  job.unit = shown_unit();
+  job.models = {"auto"};
+  for (const StockModelRow& row : stock_models()) job.models.emplace_back(row.name);
+  job.tools = job_tools(used_tools_, setup);
+  job.fixtures = setup.fixtures;
   return job;
+}
+
+void LiveWindow::show_job(ViewedJob job) {
+  SceneUpdate update;
+  update.job = std::make_shared<const ViewedJob>(std::move(job));
+  mailbox_.publish(std::move(update));
+}
+
+void LiveWindow::publish_job() {
+  const std::lock_guard lock(mutex_);
+  show_job(job());
+}
+
+/// They have fields of their own, for what is not known of them.
+void LiveWindow::note_tools(std::vector<JobTool> used) {
+  const std::lock_guard lock(mutex_);
+  used_tools_ = std::move(used);
+  if (on_set_) show_job(job());
+}
+
+void LiveWindow::edit_setups(std::function<void()> on_set) {
+  const std::lock_guard lock(mutex_);
+  on_set_ = std::move(on_set);
+}
+
+WrittenOptions LiveWindow::options_of(const std::string& program) const {
+  WrittenOptions options = written_;
+  const Result<std::optional<ProgramSetup>> setup = memory_.find(program);
+  if (!setup) {
+    print_text(stderr, trf("kerf: warning: {}\n", setup.error()));
+  } else if (*setup) {
+    lay_over(**setup, options);
+  }
+  return options;
+}
+
+std::string LiveWindow::set_up(const JobCommand& asked) {
+  // What is as it was written is not remembered: that may be written otherwise the next time.
+  const ProgramSetup plain = setup_of(written_);
+  ProgramSetup setup{asked.stock, asked.cell, asked.model, asked.tools, asked.fixtures};
+  if (setup.stock == plain.stock) setup.stock.clear();
+  if (setup.cell == plain.cell) setup.cell.clear();
+  if (setup.model == plain.model) setup.model.clear();
+  if (setup.tools == plain.tools) setup.tools.clear();
+  if (setup.fixtures == plain.fixtures) setup.fixtures.clear();
+  std::function<void()> on_set;
+  std::string program;
+  {
+    const std::lock_guard lock(mutex_);
+    program = arguments_.options.text("--program");
+    if (!on_set_ || program.empty()) return {};
+    Arguments arguments = arguments_;
+    arguments.options = written_;
+    lay_over(setup, arguments.options);
+    arguments.options.set("--program", program);
+    Diagnostics diagnostics;
+    understand_live(arguments, diagnostics);
+    std::vector<std::string> faults = faults_of(diagnostics);
+    if (faults.empty()) {
+      const Done kept = memory_.keep(program, setup);
+      if (!kept) faults.push_back(kept.error());
+    }
+    if (!faults.empty()) {
+      const std::string first = faults.front();
+      arguments_.options = std::move(arguments.options);  // they stay in their fields
+      ViewedJob refused = job();
+      refused.faults = std::move(faults);
+      show_job(std::move(refused));
+      return first;
+    }
+    on_set = on_set_;
+  }
+  on_set();
+  return trf("set for {}, and remembered", std::filesystem::path(program).filename().string());
 }
 
 LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession& session,
                                          std::stop_source stop) {
   if (on_start_) on_start_();
+  entries_.forget();
   LiveViewOptions options;
   const std::string& program =
       request.options.program ? request.options.program->path : std::string();
@@ -113,12 +221,19 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
   };
   if (options.log) options.on_speed = [&session](double speed) { session.set_speed(speed); };
   if (!program.empty() && program != "-") {
-    options.load_program = [&request](std::stop_token token) {
-      return load_live_program(request, std::move(token));
+    options.load_program = [this, &request](std::stop_token token) {
+      std::vector<JobTool> used;
+      auto loaded = load_live_program(request, std::move(token), used);
+      if (loaded) note_tools(std::move(used));
+      return loaded;
     };
   }
   const std::lock_guard lock(mutex_);
+  used_tools_.clear();
+  blank_mm_ = options.blank_mm;
   options.job = std::make_shared<const ViewedJob>(job());
+  options.on_job = [this](const JobCommand& asked) { return set_up(asked); };
+  options.on_entry = [this](int line, const LiveScene& now) { ask_entry(line, now); };
   if (command_ == kReplay) {
     options.on_open = [this, stop](const std::string& path) { open(path, stop); };
   }
@@ -128,6 +243,38 @@ LiveViewOptions LiveWindow::view_options(const LiveRequest& request, LiveSession
     mailbox_.publish(std::move(update));
   }
   return options;
+}
+
+bool LiveWindow::can_enter() const {
+  const std::string& program = arguments_.options.text("--program");
+  return command_ == kShadow && !program.empty() && program != "-" &&
+         !program.ends_with(".canon") && arguments_.options.text("--interp") != "text";
+}
+
+/// From the place where the machine stands, through the workpiece as it is.
+void LiveWindow::ask_entry(int line, const LiveScene& now) {
+  WrittenOptions options;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!can_enter()) return;
+    options = arguments_.options;
+  }
+  if (!now.stock || !now.status || !now.status->place.known)
+    return entries_.refuse(line, tr("where the machine stands is not known yet"));
+  if (now.status->place.turns)
+    return entries_.refuse(line, tr("of a workpiece that turns on its table it cannot be told"));
+  if (now.status->age_s > kOldPlace_s) {
+    return entries_.refuse(line,
+                           trf("the machine's last position is {:.1f} s old", now.status->age_s));
+  }
+  const LengthUnit unit = shown_unit();
+  const Vec3& tip = now.status->place.tip_mm;
+  const std::string program = options.text("--program");
+  // What a workpiece is made of is in it; where the work lies, the program and its INI say.
+  for (const char* const option : {"--stock", "--cell", "--model", "--at"}) options.clear(option);
+  options.set("--at", fmt::format("{},{},{}", from_mm(tip.x, unit), from_mm(tip.y, unit),
+                                  from_mm(tip.z, unit)));
+  entries_.ask(line, program, options, unit, now.stock);
 }
 
 void LiveWindow::open(const std::string& path, std::stop_source stop) {
@@ -144,11 +291,9 @@ void LiveWindow::open(const std::string& path, std::stop_source stop) {
   }
   if (view_kind_of(path) != ViewKind::kLog) {
     const std::lock_guard lock(mutex_);
-    SceneUpdate update;
     ViewedJob refused = job();
     refused.faults = {trf("{} is no log; kerf view opens programs and logs", path)};
-    update.job = std::make_shared<const ViewedJob>(std::move(refused));
-    mailbox_.publish(std::move(update));
+    show_job(std::move(refused));
     return;
   }
   std::replace(arguments.words.begin(), arguments.words.end(), arguments.options.text("LOG"), path);
@@ -170,6 +315,7 @@ bool LiveWindow::follow(const std::string& program) {
     arguments = arguments_;
     round = round_;
   }
+  arguments.options = options_of(program);
   arguments.options.set("--program", program);
   // One that cannot be followed is told once, and the watch goes on as it is.
   begin_next(std::move(arguments), std::move(*round));
@@ -185,11 +331,10 @@ bool LiveWindow::begin_next(Arguments arguments, std::stop_source stop) {
   const std::lock_guard lock(mutex_);
   if (has_error(diagnostics)) {
     print_diagnostics(diagnostics, request.quiet);
-    SceneUpdate update;
+    if (on_set_) arguments_ = std::move(arguments);  // to be mended in its fields
     ViewedJob refused = job();
     refused.faults = faults_of(diagnostics);
-    update.job = std::make_shared<const ViewedJob>(std::move(refused));
-    mailbox_.publish(std::move(update));
+    show_job(std::move(refused));
     return false;
   }
   arguments_ = std::move(arguments);

@@ -28,6 +28,7 @@
 #include "twin/cli/job_command.h"
 #include "twin/cli/live_command.h"
 #include "twin/cli/machine_command.h"
+#include "twin/cli/mcp_command.h"
 #include "twin/cli/optimize_command.h"
 #include "twin/cli/run_command.h"
 #include "twin/cli/setup_command.h"
@@ -151,7 +152,16 @@ constexpr std::array kCalls{
     CommandCall{kModels, [](const Arguments&) { return print_list(model_list()); }},
     CommandCall{kSources, [](const Arguments&) { return print_list(tr(kSourceList)); }},
     CommandCall{kTools, tools_command},
+    CommandCall{kMcp, mcp_command},
 };
+
+/// Calls are the same in all languages; what stands over them is not.
+std::string footer_of(std::string examples) {
+  constexpr std::string_view kHead = "Examples:\n";
+  if (examples.starts_with(kHead))
+    examples.replace(0, kHead.size(), tr("Examples:") + std::string("\n"));
+  return examples + "\n" + tr(kExitCodes);
+}
 
 /// The commands with their arguments, and what each of them calls.
 struct Commands {
@@ -161,7 +171,9 @@ struct Commands {
         return one.command == row.command;
       });
       CLI::App* const command = app.add_subcommand(row.name, tr(row.purpose));
-      command->footer(tr(examples_of(row.command)) + std::string("\n") + tr(kExitCodes));
+      command->group(tr("Commands"));
+      command->get_help_ptr()->group(tr("Options"));
+      command->footer(footer_of(tr(examples_of(row.command))));
       command->allow_extras();
       all.push_back(command);
       calls.push_back({command, call->call, std::make_unique<Arguments>()});
@@ -208,7 +220,7 @@ int run(int argc, char** argv) {
          "workpiece, beside the machine or without it"),
       "kerf");
   speak_language(app, "kerf " + version_text());
-  app.footer(std::string(examples_of_kerf()) + "\n" + tr(kExitCodes));
+  app.footer(footer_of(examples_of_kerf()));
   app.allow_extras();
   std::vector<std::string> words = with_bare_options(std::vector<std::string>(argv, argv + argc));
   const Commands commands(app, words);

@@ -150,6 +150,7 @@ CutRun cut(const OptimizeRequest& request, const NamedProgram& program, FeedSurv
   CutRun run;
   SessionOptions options = request.run.session;
   options.program.path = program.path;
+  options.stock.keeps_cut_ids = true;
   Diagnostics diagnostics;
   Outcome outcome = Outcome::kFailed;
   const auto tell = [&] {

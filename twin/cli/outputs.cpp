@@ -80,11 +80,19 @@ void write_pieces(const StockModel& stock, const std::string& path, Diagnostics&
   }
 }
 
+/// Of more cells OpenGL makes a smaller model first, and needs less memory.
+constexpr double kMostRayCells = 8e6;
+
+double cells_of(const HeightGrid& heights) {
+  return static_cast<double>(heights.nx()) * static_cast<double>(heights.ny());
+}
+
 std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-/// By OpenGL; by rays where there is none, which is said.
+/// Of heights by rays, which need less time and memory than OpenGL takes to begin; else by OpenGL,
+/// and by rays after all where there is none, which is said.
 Done write_picture(const OutputPaths& paths, const StockModel& stock, const CollisionWishes& around,
                    const std::string& name, Diagnostics& diagnostics) {
   const std::string& path = paths.png;
@@ -103,10 +111,14 @@ Done write_picture(const OutputPaths& paths, const StockModel& stock, const Coll
     for (PictureBody& body : picture_bodies(*around.fixtures))
       options.bodies.push_back(std::move(body));
   }
-  Result<Picture> picture = draw_part(part_patches(stock), options);
+  const std::shared_ptr<const HeightGrid> heights = stock.height_grid();
+  const bool is_plain = options.section == SectionKind::kNone && options.bodies.empty();
+  const bool by_rays = heights && is_plain && cells_of(*heights) <= kMostRayCells;
+  Result<Picture> picture = by_rays ? draw_heights(heights, options, ray_threads())
+                                    : draw_part(part_patches(stock), options);
   if (picture) return write_png(path, *picture);
   const std::string reason = picture.error();
-  const std::shared_ptr<const HeightGrid> heights = stock.height_grid();
+  if (by_rays) return Error{trf("drawing {}: {}", path, reason)};
   if (!heights) {
     return Error{
         trf("drawing {}: {} (without OpenGL only workpieces without undercuts)", path, reason)};

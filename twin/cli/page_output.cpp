@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "twin/page/page_mesh.h"
 #include "twin/page/page_printer.h"
 #include "twin/page/report_page.h"

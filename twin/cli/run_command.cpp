@@ -259,6 +259,8 @@ RunVerdict run_one(const Arguments& arguments, RunRequest request, const RunList
     if (!entry && !has_error(diagnostics)) outcome = Outcome::kInterrupted;
   }
   const bool can_open = !has_error(diagnostics) && (entry || request.entry.line == 0);
+  request.session.stock.keeps_cut_ids =
+      request.engagement || request.outputs.wants_page() || request.keeps_page;
   if (can_open) session = Session::open(request.session, diagnostics, outcome);
   Report none;
   rename_stdin(kept, session ? session->report() : none, diagnostics);

@@ -11,11 +11,12 @@ constexpr std::chrono::milliseconds kPeriod{100};
 
 }  // namespace
 
-ScreenProgram::ScreenProgram(std::string kerf_status, std::string nml_file, WrittenOptions options,
+ScreenProgram::ScreenProgram(std::string kerf_status, std::string nml_file,
+                             std::function<WrittenOptions(const std::string&)> options_of,
                              std::function<bool()> runs,
                              std::function<bool(const std::string&)> on_load)
     : file_(std::move(kerf_status), std::move(nml_file)),
-      options_(std::move(options)),
+      options_of_(std::move(options_of)),
       runs_(std::move(runs)),
       on_load_(std::move(on_load)),
       thread_([this](const std::stop_token& stop) { watch(stop); }) {}
@@ -41,7 +42,8 @@ void ScreenProgram::watch(const std::stop_token& stop) {
     file_.wait(kPeriod);
     const std::string now = file_.path().value_or("");
     const bool is_other = now != program;
-    if (is_other || on_disk.has_changed()) {
+    const bool is_changed = is_changed_.exchange(false);
+    if (is_other || is_changed || on_disk.has_changed()) {
       program = now;
       on_disk.clear();
       on_disk.add(program);
@@ -52,7 +54,7 @@ void ScreenProgram::watch(const std::stop_token& stop) {
       }
       is_due = true;
       if (!program.empty()) {
-        Result<DryRun> started = DryRun::start(program, options_);
+        Result<DryRun> started = DryRun::start(program, options_of_(program));
         if (started) {
           run = std::move(*started);
         } else {

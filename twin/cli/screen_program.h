@@ -26,25 +26,29 @@ struct ScreenProgramState {
 /// A thread of its own looks ten times a second.
 class ScreenProgram {
  public:
-  /// `options`: of the watch. `on_load` is called by the thread when the watch is to go on along
-  /// another program, or along the same one as it is now on the disk (empty: along none); false: it
-  /// cannot now, and is asked again. Not while `runs()`, unless none is followed yet: LinuxCNC goes
-  /// on with what it has read.
-  ScreenProgram(std::string kerf_status, std::string nml_file, WrittenOptions options,
+  /// `options_of`: of a program, as its dry run is to have them. `on_load` is called by the thread
+  /// when the watch is to go on along another program, or along the same one as it is now on the
+  /// disk (empty: along none); false: it cannot now, and is asked again. Not while `runs()`, unless
+  /// none is followed yet: LinuxCNC goes on with what it has read.
+  ScreenProgram(std::string kerf_status, std::string nml_file,
+                std::function<WrittenOptions(const std::string&)> options_of,
                 std::function<bool()> runs, std::function<bool(const std::string&)> on_load);
   ~ScreenProgram();
   ScreenProgram(const ScreenProgram&) = delete;
   ScreenProgram& operator=(const ScreenProgram&) = delete;
 
   ScreenProgramState state() const;
+  /// The options of the program are others now: as if its file had changed. From any thread.
+  void look_again() { is_changed_ = true; }
 
  private:
   void watch(const std::stop_token& stop);
 
   LoadedFile file_;
-  WrittenOptions options_;
+  std::function<WrittenOptions(const std::string&)> options_of_;
   std::function<bool()> runs_;
   std::function<bool(const std::string&)> on_load_;
+  std::atomic<bool> is_changed_{false};
   mutable std::mutex mutex_;  // of state_
   ScreenProgramState state_;
   std::jthread thread_;  // last: it uses all of the above

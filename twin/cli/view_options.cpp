@@ -153,6 +153,7 @@ ViewRequest understand_view(const Arguments& arguments, Diagnostics& diagnostics
   request.run.engagement = reader.is_yes("--engagement") ||
                            request.run.session.cutting.is_wanted() ||
                            has_tool_limits(request.run.session);
+  request.run.session.stock.keeps_cut_ids = true;
   request.written = arguments;
   request.speed = read_speed(reader);
   request.run.serve = understand_serve(reader);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "stock/cutter/shape_spec.h"
 #include "twin/cli/command_line.h"
 #include "twin/cli/console.h"
+#include "twin/cli/program_setup.h"
 #include "twin/job/stock_choice.h"
 #include "twin/report/shown_lengths.h"
 
@@ -22,15 +22,6 @@ constexpr std::chrono::milliseconds kWorkPatience{100};
 constexpr std::chrono::milliseconds kAnnouncePeriod{100};
 /// Of what is wrong with a program the window tells the first.
 constexpr std::size_t kFaultsShown = 8;
-
-/// The number of "3=flat:6"; none if there is none.
-std::optional<int> tool_number(const std::string& argument) {
-  int number = 0;
-  const char* const end = argument.data() + argument.size();
-  const auto read = std::from_chars(argument.data(), end, number);
-  if (read.ec != std::errc() || read.ptr == end || *read.ptr != '=') return std::nullopt;
-  return number;
-}
 
 std::string first_line(const Diagnostic& diagnostic) {
   const std::string text = to_string(in_unit(diagnostic, shown_unit()));
@@ -191,6 +182,7 @@ bool ViewWork::take(const ViewerCommand& asked) {
     for (const auto& [number, shape] : job->tools) {
       options.add("--tool", fmt::format("{}={}", number, shape));
     }
+    options.set_all("--fixture", job->fixtures);
   }
   return true;
 }
@@ -360,17 +352,9 @@ void ViewWork::publish_job() {
   job_.command = command_line(setups_ ? setups_->job_arguments(*arguments_) : *arguments_);
   job_.models = {"auto"};
   for (const StockModelRow& row : stock_models()) job_.models.emplace_back(row.name);
-  for (JobTool& tool : job_.tools) tool.given.clear();
-  for (const std::string& argument : options.texts("--tool")) {
-    const std::optional<int> number = tool_number(argument);
-    if (!number) continue;
-    auto at = std::find_if(job_.tools.begin(), job_.tools.end(),
-                           [&](const JobTool& tool) { return tool.number == *number; });
-    if (at == job_.tools.end()) at = job_.tools.insert(at, JobTool{*number, "", "", ""});
-    at->given = argument.substr(argument.find('=') + 1);
-  }
-  std::sort(job_.tools.begin(), job_.tools.end(),
-            [](const JobTool& a, const JobTool& b) { return a.number < b.number; });
+  const ProgramSetup setup = setup_of(options);
+  job_.fixtures = setup.fixtures;
+  job_.tools = job_tools(std::move(job_.tools), setup);
   SceneUpdate update;
   update.job = std::make_shared<const ViewedJob>(job_);
   mailbox_.publish(std::move(update));

@@ -233,10 +233,16 @@ void read_fixtures(const LiveConfig* config, OptionReader& reader, WorkRequest& 
 void read_choices(OptionReader& reader, WorkRequest& work) {
   work.path_from = reader.choose("--path").from;
   work.planned_path = reader.word("--path") == 1;
-  reader.word("--kernel", {ZMapKernel::kAuto, ZMapKernel::kScalar, ZMapKernel::kAvx2},
+  reader.word("--kernel",
+              {ZMapKernel::kAuto, ZMapKernel::kScalar, ZMapKernel::kSse2, ZMapKernel::kAvx2,
+               ZMapKernel::kNeon},
               work.stock.kernel);
-  if (work.stock.kernel == ZMapKernel::kAvx2 && !zmap_has_avx2()) {
-    reader.fault("--kernel", tr("this machine cannot run avx2; allowed: auto, scalar"));
+  if (!zmap_can_run(work.stock.kernel)) {
+    std::string allowed(to_string(ZMapKernel::kAuto));
+    for (const ZMapKernel kernel : zmap_kernels())
+      allowed += fmt::format(", {}", to_string(kernel));
+    reader.fault("--kernel", trf("this machine cannot run {}; allowed: {}",
+                                 to_string(work.stock.kernel), allowed));
   }
 }
 

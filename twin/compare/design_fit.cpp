@@ -86,6 +86,7 @@ bool solve(Mat6 a, Vec6 b, Vec6& x) {
 struct Pair {
   Vec3 point, normal;  ///< in the design's frame; of the design
   double off = 0;
+  double doubt = 0;
 };
 
 class Fitter {
@@ -128,7 +129,7 @@ class Fitter {
       if (!(size > 0)) continue;
       normal *= (design_.is_inside_out() ? -1 : 1) / size;
       if (glm::dot(normal, facing) < kSameFace) continue;
-      pairs_.push_back({at, normal, glm::dot(at - near.point_mm, normal)});
+      pairs_.push_back({at, normal, glm::dot(at - near.point_mm, normal), p.doubt_mm});
     }
     if (pairs_.empty()) return;
     std::vector<double> sizes;
@@ -137,7 +138,9 @@ class Fitter {
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
     const double most = std::max(kFarther * *middle, 1e-6);
-    std::erase_if(pairs_, [most](const Pair& pair) { return std::abs(pair.off) > most; });
+    std::erase_if(pairs_, [most](const Pair& pair) {
+      return std::abs(pair.off) > std::max(most, pair.doubt);
+    });
   }
 
   /// Returns how far the farthest point went, about.
@@ -213,6 +216,7 @@ std::vector<FitPoint> fit_points(const StockModel& stock, std::size_t count) {
   std::vector<FitPoint> points;
   points.reserve(count + 1);
   const double step = area / static_cast<double>(count);
+  const double half_cell_mm = 0.5 * stock.cell_mm();
   double walked = 0.5 * step, turn = 0;
   each_surface(stock, only_cut, [&](const auto& corners, const Vec3& across, double mm2) {
     if (!(mm2 > 0)) return;
@@ -225,8 +229,9 @@ std::vector<FitPoint> fit_points(const StockModel& stock, std::size_t count) {
         u = 1 - u;
         v = 1 - v;
       }
+      const Vec3 normal = glm::normalize(across);
       points.push_back({corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]),
-                        glm::normalize(across)});
+                        normal, half_cell_mm * glm::length(Vec2(normal))});
     }
   });
   return points;

@@ -15,6 +15,7 @@ namespace kerf {
 struct FitPoint {
   Vec3 at_mm{0};
   Vec3 normal{0, 0, 1};
+  double doubt_mm = 0;  ///< so far off it may be where all is right: walls go by cells
 };
 
 /// Points spread evenly over what has been cut (of a model that keeps cut ids; of all there is, if
@@ -30,10 +31,10 @@ struct DesignFit {
 /// Moves and turns the design, from `start` on, so that the points lie on its surface: each is
 /// drawn to the plane of the nearest triangle that faces as it does (point-to-plane ICP, Y. Chen,
 /// G. Medioni, "Object modelling by registration of multiple range images", 1992). Points that are
-/// more than three times as far off as the middle one do not count: what is left over or cut too
-/// deep does not pull. What the surface does not say (a part that turns, about its axis) stays as
-/// it was. Finds the best place near the start (some mm, some ten degrees), not any.
-/// `design`: as it is in its file. None: fewer than six points count.
+/// more than three times as far off as the middle one, and than they may be, do not count: what is
+/// left over or cut too deep does not pull. What the surface does not say (a part that turns, about
+/// its axis) stays as it was. Finds the best place near the start (some mm, some ten degrees), not
+/// any. `design`: as it is in its file. None: fewer than six points count.
 std::optional<DesignFit> fit_design(const DesignPart& design, const std::vector<FitPoint>& points,
                                     const DesignPlacement& start);
 

@@ -57,10 +57,14 @@ bool improve(const std::array<glm::vec3, 3>& corners, const Vec3& p, NearestPoin
   const double of_a = area2 - of_b - of_c;
   const double before = best.distance2_mm2;
   if (area2 > 0 && of_a >= 0 && of_b >= 0 && of_c >= 0) {
-    best.distance2_mm2 = height * height / area2;
+    // Of triangles at equal distances, which rounding may not have told above, one is meant
+    // throughout.
+    const double distance2 = height * height / area2;
+    if (!(distance2 < before)) return false;
+    best.distance2_mm2 = distance2;
     best.point_mm = p - normal * (height / area2);
     best.feature = TriangleFeature::kFace;
-    return best.distance2_mm2 < before;
+    return true;
   }
   const bool is_flat = !(area2 > 0);
   if (of_c < 0 || is_flat) try_edge(a, b, 0, p, best);

@@ -27,6 +27,7 @@ constexpr std::array kCommands{
     CommandRow{kSources, "sources", tr_noop("list where positions may come from")},
     CommandRow{kTools, "tools",
                tr_noop("list the tool shapes, the holders, or the tools of a library")},
+    CommandRow{kMcp, "mcp", tr_noop("dry runs as tools of an assistant (Model Context Protocol)")},
 };
 
 }  // namespace

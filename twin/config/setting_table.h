@@ -56,6 +56,7 @@ enum Command : std::uint16_t {
   kJob = 4096,
   kOptimize = 8192,
   kSetup = 16384,
+  kMcp = 32768,
 };
 inline constexpr std::uint16_t kBesideMachine = kShadow | kReplay;
 /// Those that take workpieces of every kind, and those that take what is milled.
@@ -134,7 +135,7 @@ std::span<const Setting> workpiece_settings();  ///< tools, stock
 std::span<const Setting> sheet_settings();      ///< beam, turret
 std::span<const Setting> follow_settings();     ///< the program that a machine runs, lines
 std::span<const Setting> output_settings();     ///< files
-std::span<const Setting> batch_settings();      ///< kerf batch
+std::span<const Setting> batch_settings();      ///< kerf batch, kerf mcp
 std::span<const Setting> job_settings();        ///< kerf job
 std::span<const Setting> optimize_settings();   ///< kerf optimize
 std::span<const Setting> view_settings();       ///< window, pictures

@@ -113,6 +113,7 @@ enum class FindingId : std::uint8_t {
   kSpindleReversed,   ///< cuts while the spindle runs anticlockwise
   kEntryContact,      ///< a start in the middle of the program cuts what is in its way
   kLoadDiffers,       ///< of a watched machine: its spindle takes what its cuts should not
+  kLongDwell,         ///< dwells for minutes
 };
 
 /// "rapid-contact", ...: the `id` of the report.

@@ -319,6 +319,9 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
              "cuts should (--material); a note where its load stands still."),
      tr_noop("More: is the tool blunt? Less: is it broken? Else material, depth or tool are other "
              "ones than kerf knows.")},
+    {Id::kLongDwell, "long-dwell", kNote, Topic::kProgram,
+     tr_noop("The program stands still for a hundred seconds or more."),
+     tr_noop("P of G4, G82, G86, G88 and G89 is in seconds; many controls take milliseconds.")},
 }};
 
 constexpr bool in_order() {

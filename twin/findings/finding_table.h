@@ -42,7 +42,7 @@ struct FindingTopicRow {
 };
 
 /// With the last ones of the enums: these numbers grow with them.
-inline constexpr std::size_t kFindingIds = static_cast<std::size_t>(FindingId::kLoadDiffers) + 1;
+inline constexpr std::size_t kFindingIds = static_cast<std::size_t>(FindingId::kLongDwell) + 1;
 inline constexpr std::size_t kFindingTopics = static_cast<std::size_t>(FindingTopic::kDesign) + 1;
 
 /// In the order of FindingId.

@@ -64,6 +64,7 @@ Created create_zmap(const Blank& blank, const StockSettings& settings) {
   options.cell_mm = cell_of(blank, settings);
   options.threads = settings.threads;
   options.kernel = settings.kernel;
+  options.keeps_cut_ids = settings.keeps_cut_ids;
   return as_model(ZMap::create(options));
 }
 
@@ -73,6 +74,7 @@ Created create_mmap(const Blank& blank, const StockSettings& settings) {
   options.cell_mm = cell_of(blank, settings);
   options.threads = settings.threads;
   options.kernel = settings.kernel;
+  options.keeps_cut_ids = settings.keeps_cut_ids;
   return as_model(MMap::create(options));
 }
 
@@ -97,6 +99,7 @@ Created create_octree(const Blank& blank, const StockSettings& settings) {
   options.cell_mm = settings.cell_mm > 0 ? settings.cell_mm : octree_cell_mm(blank.bounds_mm());
   options.threads = settings.threads;
   options.additive = settings.additive;
+  options.kernel = octree_kernel(settings.kernel);
   // The rest is for what is made of it: meshes, pictures, copies for a view.
   options.memory_limit_bytes = memory_allowed_bytes() / 3;
   return as_model(Octree::create(options));
@@ -131,6 +134,7 @@ Done sheet_can_cut(const Cutter& cutter) {
 MillTurnOptions milling_options(const StockSettings& settings) {
   MillTurnOptions options;
   options.threads = settings.threads;
+  options.kernel = octree_kernel(settings.kernel);
   options.memory_limit_bytes = memory_allowed_bytes() / 3;
   return options;
 }
@@ -172,6 +176,21 @@ std::string undercut_of(int tool, const Cutter& cutter) {
 }  // namespace
 
 std::span<const StockModelRow> stock_models() { return kModels; }
+
+octree::KernelChoice octree_kernel(ZMapKernel kernel) {
+  switch (kernel) {
+    case ZMapKernel::kScalar:
+    case ZMapKernel::kSse2:
+    case ZMapKernel::kNeon:
+      return octree::KernelChoice::kScalar;
+    case ZMapKernel::kAvx2:
+      if (octree::has_avx2()) return octree::KernelChoice::kAvx2;
+      break;
+    default:
+      break;
+  }
+  return octree::KernelChoice::kAuto;
+}
 
 const StockModelRow& stock_model(StockKind kind) {
   return *std::find_if(kModels.begin(), kModels.end(),

@@ -9,6 +9,7 @@
 
 #include "base/translate.h"
 #include "stock/blank.h"
+#include "stock/octree/kernel_choice.h"
 #include "stock/stock_model.h"
 #include "stock/zmap/zmap_kernel.h"
 #include "twin/job/tools.h"
@@ -24,6 +25,8 @@ struct StockSettings {
   double cell_mm = 0;             ///< 0: what suits the blank (and of heights, the finest tool)
   int threads = 1;                ///< cutting threads
   ZMapKernel kernel = ZMapKernel::kAuto;
+  /// StockModel::keep_cut_ids() will be asked for: models of heights make room at once.
+  bool keeps_cut_ids = false;
   /// What comes after the program needs an octree: "setup 3 lays it on its side". Counts where
   /// nothing else is asked for and nothing turns; empty: nothing does.
   std::string later_need;
@@ -45,6 +48,8 @@ struct StockModelRow {
 /// the sheet is for sheets alone, and sheets are for it alone; turning is for what turns.
 std::span<const StockModelRow> stock_models();
 const StockModelRow& stock_model(StockKind kind);
+/// An octree's plain kernel is that for SSE2 and NEON, too; its "auto" may take one more (AVX-512).
+octree::KernelChoice octree_kernel(ZMapKernel kernel);
 /// Least of the usual cells that gives the surface of a box at most a million of them.
 double octree_cell_mm(const Box& box);
 /// A workpiece that turns, as the model turning has it: driven tools may mill it. `settings`: its

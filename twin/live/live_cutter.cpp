@@ -12,9 +12,9 @@ namespace kerf {
 namespace {
 
 /// Only milling cuts are worked out.
-CuttingWish milling_wish(const StockModel& stock, const LiveCutOptions& options) {
+CuttingWish cutting_wish(const StockModel& stock, const LiveCutOptions& options) {
   CuttingWish wish = options.checks.cutting;
-  if (stock.sheet() || stock.turned()) wish.material.reset();
+  if (stock.sheet()) wish.material.reset();
   return wish;
 }
 
@@ -30,7 +30,7 @@ LiveCutter::LiveCutter(StockModel& stock, const ToolSources& tools, FindingLog& 
       source_watch_(stock, options_, log, facts_),
       machine_watch_(stock, options_, log),
       path_watch_(options_, matcher_, log, facts_),
-      loads_(milling_wish(stock, options_), log),
+      loads_(cutting_wish(stock, options_), log),
       look_ahead_(tools, options_),
       late_join_(options_, matcher_, cutter_, punch_) {
   if (program) follow_program(std::move(program));

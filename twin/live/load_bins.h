@@ -11,18 +11,21 @@ namespace kerf {
 
 /// What lies within a quarter of a second. Loads are in the unit of the source.
 struct LoadBin {
-  double covered_s = 0;    ///< of it, with a load that was told
-  double load_s = 0;       ///< load times time
-  double cut_s = 0;        ///< of it, in material
-  bool is_known = true;    ///< what it should take
-  ValueRange expected_s;   ///< that, times time
-  double rpm = 0;          ///< 0: the spindle stands, or nobody tells
-  bool is_steady = true;   ///< its speed has not changed for a while
-  bool is_frozen = false;  ///< the number stands still
-  int tool = 0;            ///< that cuts; 0: none
-  bool is_mixed = false;   ///< two do
-  SourceRef source;        ///< of the first cut
+  double covered_s = 0;      ///< of it, with a load that was told
+  double load_s = 0;         ///< load times time
+  double cut_s = 0;          ///< of it, in material
+  bool is_known = true;      ///< what it should take
+  ValueRange expected_s;     ///< that, times time
+  double rpm_s = 0;          ///< speed times time covered
+  bool is_steady = true;     ///< neither its speed nor the tool has changed for a while
+  bool is_drifting = false;  ///< its speed changes slowly, and has come far since it was steady
+  bool is_frozen = false;    ///< the number stands still
+  int tool = 0;              ///< that cuts; 0: none
+  bool is_mixed = false;     ///< two do
+  SourceRef source;          ///< of the first cut
   double load() const { return covered_s > 0 ? load_s / covered_s : 0; }
+  /// 0: the spindle stands, or nobody tells.
+  double rpm() const { return covered_s > 0 ? rpm_s / covered_s : 0; }
 };
 
 /// Bins in their order, made where they are needed; old ones can be forgotten. One thread.

@@ -15,18 +15,12 @@ namespace {
 
 /// A spindle slower than this stands.
 constexpr double kStands_rpm = 1;
-/// A motor slips under load, and a speed that differs by more is another one.
-constexpr double kSameSpeed = 0.1;
 /// Samples farther apart say nothing of what is between them; ways that last longer either.
 constexpr double kLongStep_s = 1.5;
 constexpr double kLeastCovered = 0.75 * LoadBins::kBin_s;
-/// Bins of which the idle load is the lower quartile: spinning up takes more. And the fewest.
-constexpr std::size_t kIdleBins = 24, kLeastIdleBins = 4;
 /// The idle load changes with the oil's temperature by so much of it.
 constexpr double kIdleDrift = 0.25;
 constexpr double kNoises = 3;
-/// From the quartiles' distance to a standard deviation.
-constexpr double kQuartiles = 1.35;
 /// Of what the spindle is rated for: the number may be coarse.
 constexpr double kLeastShare = 0.01;
 /// So many times the margin a cut should take, or one that takes nothing cannot be seen.
@@ -36,8 +30,6 @@ constexpr double kLeastStill_s = 3, kStillTimes = 4;
 constexpr double kStillCutting_s = 10;
 
 double abs_rpm(const AxisSample& sample) { return std::abs(sample.spindle_rpm); }
-
-bool is_same_speed(double a, double b) { return std::abs(a - b) <= kSameSpeed * std::max(a, b); }
 
 }  // namespace
 
@@ -78,7 +70,7 @@ double LoadWatch::least_margin() const {
 void LoadWatch::take(const AxisSample& sample, double t_s) {
   const double elapsed_s = t_s_ < 0 ? 0 : t_s - t_s_;
   const double from_s = std::exchange(t_s_, t_s);
-  watch_speed(sample, t_s);
+  watch_tool(sample, t_s);
   const double load = sample.load;
   if (std::isnan(load)) return;
   known_.unit = sample.load_unit;
@@ -91,20 +83,36 @@ void LoadWatch::take(const AxisSample& sample, double t_s) {
   bins_.spread(from_s, t_s, [&](LoadBin& bin, double seconds) {
     bin.covered_s += seconds;
     bin.load_s += load * seconds;
-    bin.rpm = rpm;
-    bin.is_steady = bin.is_steady && t_s >= steady_from_s_ && rpm >= kStands_rpm;
+    bin.rpm_s += rpm * seconds;
+    bin.is_steady = bin.is_steady && t_s >= tool_from_s_ && rpm >= kStands_rpm;
   });
   watch_stillness(load, t_s, elapsed_s);
 }
 
-/// Another speed, another tool: it takes a while until the load is that of the new one.
-void LoadWatch::watch_speed(const AxisSample& sample, double t_s) {
-  const double rpm = abs_rpm(sample);
-  const bool other_speed = !std::isnan(rpm) && (std::isnan(rpm_) || !is_same_speed(rpm, rpm_));
-  const bool other_tool = sample.tool >= 0 && sample.tool != tool_;
-  if (other_speed) rpm_ = rpm;
-  if (other_tool) tool_ = sample.tool;
-  if (other_speed || other_tool) steady_from_s_ = t_s + kSettle_s;
+/// Another tool: it takes a while until the load is that of the new one.
+void LoadWatch::watch_tool(const AxisSample& sample, double t_s) {
+  if (const double rpm = abs_rpm(sample); !std::isnan(rpm)) rpm_ = rpm;
+  if (sample.tool < 0 || sample.tool == tool_) return;
+  tool_ = sample.tool;
+  tool_from_s_ = t_s + kSettle_s;
+}
+
+/// So it does with another speed, if it is not come to slowly. Bins in their order.
+void LoadWatch::watch_speed(std::int64_t number, LoadBin& bin) {
+  if (bin.covered_s <= 0) return;
+  const double rpm = bin.rpm();
+  is_drifting_ = !is_same_speed(rpm, settled_rpm_);
+  const bool is_quick = last_rpm_.empty() || !is_same_speed(rpm, last_rpm_.front());
+  if (is_quick || (is_drifting_ && known_.unit == LoadUnit::kAmperes)) {
+    last_rpm_.clear();
+    settled_rpm_ = rpm;
+    is_drifting_ = false;
+    speed_from_s_ = LoadBins::begin_of(number) + kSettle_s;
+  }
+  last_rpm_.push_back(rpm);
+  if (last_rpm_.size() > static_cast<std::size_t>(kSlowly_bins)) last_rpm_.pop_front();
+  bin.is_drifting = is_drifting_;
+  bin.is_steady = bin.is_steady && LoadBins::begin_of(number) >= speed_from_s_;
 }
 
 /// Numbers that stand still may be coarse, or nobody writes them any more.
@@ -180,43 +188,38 @@ bool LoadWatch::is_air(std::int64_t number) const {
   return true;
 }
 
-const LoadWatch::Idle* LoadWatch::idle_at(double rpm) const {
-  const auto found = std::find_if(known_.idle.begin(), known_.idle.end(),
-                                  [&](const Idle& idle) { return is_same_speed(idle.rpm, rpm); });
-  return found == known_.idle.end() ? nullptr : &*found;
+std::optional<IdleLoads::Idle> LoadWatch::idle_of(double rpm, bool is_drifting) const {
+  return is_drifting ? known_.idle.near(rpm, known_.unit) : known_.idle.at(rpm);
 }
 
-void LoadWatch::learn_idle(const LoadBin& bin) {
-  if (idle_at(bin.rpm) == nullptr) known_.idle.push_back({bin.rpm, {}, 0});
-  Idle& idle = known_.idle[static_cast<std::size_t>(idle_at(bin.rpm) - known_.idle.data())];
-  if (idle.loads.size() < kIdleBins) {
-    idle.loads.push_back(bin.load());
-  } else {
-    idle.loads[idle.next++ % kIdleBins] = bin.load();
+/// While the speed changes, the mean over the window.
+std::optional<IdleLoads::Idle> LoadWatch::window_idle(std::int64_t last) const {
+  const LoadBin& bin = *bins_.find(last);
+  if (!bin.is_drifting) return idle_of(bin.rpm(), false);
+  IdleLoads::Idle sum;
+  for (std::int64_t n = last - kWindow + 1; n <= last; ++n) {
+    const std::optional<IdleLoads::Idle> idle = idle_of(bins_.find(n)->rpm(), true);
+    if (!idle) return std::nullopt;
+    sum.load += idle->load / kWindow;
+    sum.doubt += idle->doubt / kWindow;
+    sum.noise = std::max(sum.noise, idle->noise);
   }
-}
-
-std::optional<LoadWatch::IdleNow> LoadWatch::idle_of(double rpm) const {
-  const Idle* const idle = idle_at(rpm);
-  if (idle == nullptr || idle->loads.size() < kLeastIdleBins) return std::nullopt;
-  std::vector<double> sorted = idle->loads;
-  std::sort(sorted.begin(), sorted.end());
-  const double low = sorted[sorted.size() / 4], high = sorted[sorted.size() * 3 / 4];
-  return IdleNow{low, (high - low) / kQuartiles};
+  return sum;
 }
 
 void LoadWatch::judge_bin(std::int64_t number) {
-  const LoadBin* const bin = bins_.find(number);
-  if (bin == nullptr) return;
+  if (bins_.find(number) == nullptr) return;
+  LoadBin* const bin = bins_.at(number);
+  watch_speed(number, *bin);
   if (bin->is_frozen) {
     still_cut_s_ += bin->cut_s;
     if (still_cut_s_ > kStillCutting_s && !known_.still_told)
       tell_stillness(LoadBins::begin_of(number));
   }
-  if (is_usable(*bin) && is_air(number)) learn_idle(*bin);
+  if (is_usable(*bin) && is_air(number)) known_.idle.learn(bin->rpm(), bin->load());
   int tool = 0;
   if (!window_tool(number, tool)) return;
-  if (const std::optional<IdleNow> idle = idle_of(bin->rpm)) judge_window(number, tool, *idle);
+  if (const auto idle = window_idle(number)) judge_window(number, tool, *idle);
 }
 
 /// False: a bin of the window cannot be judged.
@@ -258,10 +261,11 @@ LoadWatch::Expected LoadWatch::window_expected(std::int64_t last) const {
   return out;
 }
 
-void LoadWatch::judge_window(std::int64_t last, int number, const IdleNow& idle) {
+void LoadWatch::judge_window(std::int64_t last, int number, const IdleLoads::Idle& idle) {
   const Expected expected = window_expected(last);
   const double margin =
-      std::max({kIdleDrift * std::abs(idle.load), kNoises * idle.noise, least_margin()});
+      std::max({kIdleDrift * std::abs(idle.load), kNoises * idle.noise, least_margin()}) +
+      idle.doubt;
   if (expected.nominal_high <= margin) return;
   Tool& tool = known_.tools[number];
   const double cuts = window_load(last) - idle.load;
@@ -341,7 +345,7 @@ std::optional<LoadNow> LoadWatch::now() const {
   out.unit = known_.unit;
   out.measured = last_load_;
   if (!wish_.material) return out;
-  const std::optional<IdleNow> idle = idle_of(std::isnan(rpm_) ? part_rpm_ : rpm_);
+  const auto idle = idle_of(std::isnan(rpm_) ? part_rpm_ : rpm_, is_drifting_);
   if (!idle) return out;
   // Of the last second of which all is known.
   ValueRange sum;
@@ -366,9 +370,7 @@ std::optional<LoadReport> LoadWatch::report() const {
   out.samples = known_.samples;
   out.least = known_.least;
   out.most = known_.most;
-  for (const Idle& idle : known_.idle) {
-    if (const auto load = idle_of(idle.rpm)) out.idle.push_back({idle.rpm, load->load});
-  }
+  for (const auto& [rpm, idle] : known_.idle.all()) out.idle.push_back({rpm, idle.load});
   for (const auto& [number, tool] : known_.tools) {
     if (tool.judged_s <= 0) continue;
     out.tools.push_back({number, tool.judged_s, tool.differs_s, tool.measured_s / tool.judged_s,

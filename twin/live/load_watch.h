@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "machine_io/position_source.h"
 #include "twin/findings/finding.h"
+#include "twin/live/idle_loads.h"
 #include "twin/live/load_bins.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/load_listener.h"
@@ -31,9 +32,14 @@ namespace kerf {
 /// of two tools, and cuts that should take less than the idle load is uncertain. What differs for
 /// kLasting_s of the time that is judged, in one direction, is a finding, once a tool and
 /// direction. One thread; deterministic.
+///
+/// A speed is kept while it changes by less than a tenth in kSlowly_bins, as facing at constant
+/// surface speed has it: what the spindle's own mass takes of that is little beside the cut. Once
+/// it has come to speeds whose idle load was not measured, that is IdleLoads::near(). Not of
+/// currents: of a torque they are another share there.
 class LoadWatch final : public LoadListener {
  public:
-  static constexpr int kWindow = 16, kShifts = 4;
+  static constexpr int kWindow = 16, kShifts = 4, kSlowly_bins = 4;
   static constexpr double kSettle_s = 3, kLasting_s = 5, kLearn_s = 20;
   static constexpr double kLeastEfficiency = 0.75;
   static constexpr double kLeastOfUsual = 0.5, kMostOfUsual = 1.4;
@@ -55,15 +61,6 @@ class LoadWatch final : public LoadListener {
   std::optional<LoadReport> report() const;
 
  private:
-  /// The idle load at about one speed.
-  struct Idle {
-    double rpm = 0;
-    std::vector<double> loads;  ///< of the last bins, a ring
-    std::size_t next = 0;
-  };
-  struct IdleNow {
-    double load = 0, noise = 0;
-  };
   enum class Side : std::uint8_t { kWithin, kLower, kHigher };
   struct Usual {
     double seconds = 0, measured = 0, nominal = 0;
@@ -94,7 +91,7 @@ class LoadWatch final : public LoadListener {
     double least = std::numeric_limits<double>::infinity();
     double most = -std::numeric_limits<double>::infinity();
     double longest_still_s = 0;  ///< that was over again
-    std::vector<Idle> idle;
+    IdleLoads idle;
     std::map<int, Tool> tools;
     bool still_told = false;
   };
@@ -102,19 +99,19 @@ class LoadWatch final : public LoadListener {
   double per_power_w() const;
   double per_torque_nm() const;
   double least_margin() const;
-  void watch_speed(const AxisSample& sample, double t_s);
+  void watch_tool(const AxisSample& sample, double t_s);
+  void watch_speed(std::int64_t number, LoadBin& bin);
   void watch_stillness(double load, double t_s, double elapsed_s);
   void tell_stillness(double t_s);
   bool is_usable(const LoadBin& bin) const;
   bool is_air(std::int64_t number) const;
-  void learn_idle(const LoadBin& bin);
-  const Idle* idle_at(double rpm) const;
-  std::optional<IdleNow> idle_of(double rpm) const;
+  std::optional<IdleLoads::Idle> idle_of(double rpm, bool is_drifting) const;
+  std::optional<IdleLoads::Idle> window_idle(std::int64_t last) const;
   void judge_bin(std::int64_t number);
   bool window_tool(std::int64_t last, int& tool) const;
   double window_load(std::int64_t last) const;
   Expected window_expected(std::int64_t last) const;
-  void judge_window(std::int64_t last, int number, const IdleNow& idle);
+  void judge_window(std::int64_t last, int number, const IdleLoads::Idle& idle);
   void note(Tool& tool, int number, const Stretch& now);
   void tell(int number, const Stretch& stretch, double idle);
 
@@ -127,7 +124,11 @@ class LoadWatch final : public LoadListener {
   double rpm_ = std::numeric_limits<double>::quiet_NaN();
   double part_rpm_ = 0;  ///< where the source tells none
   int tool_ = -1;
-  double steady_from_s_ = 0;
+  double tool_from_s_ = 0;   ///< the tool is steady
+  double speed_from_s_ = 0;  ///< .. and the speed, of the bins that have been judged
+  double settled_rpm_ = 0;   ///< the speed when it was another one last
+  bool is_drifting_ = false;
+  std::deque<double> last_rpm_;  ///< of the last bins, kSlowly_bins at most
   double still_load_ = 0, still_from_s_ = 0, still_s_ = 0, frozen_to_s_ = 0, still_cut_s_ = 0;
   double heard_s_ = 0;
   Stretch stretch_;

@@ -21,6 +21,7 @@ CutStage::CutStage(StockModel& stock, ToolResolver& tools, FindingLog& log,
       timeline_(options, *this),
       axis_limits_(options.limits, log),
       lost_feeds_(log),
+      dwells_(log),
       process_(plan.make(site_)) {}
 
 void CutStage::set_frame(const WorkpieceFrame& frame) {
@@ -96,6 +97,7 @@ void CutStage::begin_reporting() {
   axis_limits_.forget_events();
   timeline_.begin_totals();
   site_.feeds.forget();
+  dwells_.forget();
   machine_place_told_ = unknown_feed_told_ = false;
   invented_limits_told_ = false;
   site_.holding = false;
@@ -108,6 +110,7 @@ void CutStage::finish(bool whole) {
   if (site_.holding) begin_reporting();  // with nothing
   // Of a machine that was made up one note is enough.
   if (!invented_limits_told_) site_.feeds.report();
+  dwells_.report();
   process_->finish(whole);
 }
 
@@ -119,6 +122,7 @@ ProbeAnswer CutStage::answer(const ProbeQuestion& question) {
 void CutStage::cut(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   axis_limits_.check(m, step);
   if (!site_.watched) lost_feeds_.watch(m, step);
+  dwells_.note(m, step);
   if (traits_.turns && (m.unknown_from | m.unknown_to) != 0) report_unknown_place(m, step);
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (traits_.turns) check_turns(m, step);

@@ -22,6 +22,7 @@
 #include "twin/process/axis_limits.h"
 #include "twin/process/check_options.h"
 #include "twin/process/cut_labels.h"
+#include "twin/process/dwell_check.h"
 #include "twin/process/lost_feed_check.h"
 #include "twin/process/process.h"
 
@@ -141,6 +142,7 @@ class CutStage : private StepSink {
   Timeline timeline_;
   AxisLimitCheck axis_limits_;
   LostFeedCheck lost_feeds_;
+  DwellCheck dwells_;
   std::unique_ptr<Process> process_;
   std::uint64_t taken_ = 0;    ///< motions
   std::uint64_t stepped_ = 0;  ///< of them, those whose time is known

@@ -28,6 +28,17 @@ void EngagementSums::add(const EngagementLook& look, const EngagedWay& way) {
   contact_most_mm = std::max(contact_most_mm, look.contact_mm);
 }
 
+void EngagementSums::take_back(const EngagementLook& look, const EngagedWay& way) {
+  EngagementSums back;
+  back.add(look, way);
+  const auto less = [](double& sum, double by) { sum = std::max(0.0, sum - by); };
+  less(cut_s, back.cut_s), less(cut_mm, back.cut_mm), less(plunge_mm, back.plunge_mm);
+  less(full_mm, back.full_mm), less(ramp_mm, back.ramp_mm), less(climb_mm, back.climb_mm);
+  less(wide_sum_mm2, back.wide_sum_mm2), less(angle_sum, back.angle_sum);
+  less(deep_sum_mm2, back.deep_sum_mm2);
+  less(entry_sum, back.entry_sum), less(exit_sum, back.exit_sum);
+}
+
 void EngagementSums::add(const EngagementSums& other) {
   cut_mm += other.cut_mm, plunge_mm += other.plunge_mm, full_mm += other.full_mm;
   cut_s += other.cut_s, ramp_mm += other.ramp_mm, climb_mm += other.climb_mm;

@@ -74,6 +74,8 @@ struct EngagementSums {
 
   void add(const EngagementLook& look, const EngagedWay& way);
   void add(const EngagementSums& other);
+  /// What has been added of a way does not count; what was the most of any stays.
+  void take_back(const EngagementLook& look, const EngagedWay& way);
   double in_material_mm() const { return cut_mm + plunge_mm; }
   double mean(double sum) const { return cut_mm > 0 ? sum / cut_mm : 0; }
   double rate_mm3_per_s() const { return cut_s > 0 ? removed_mm3 / cut_s : 0; }

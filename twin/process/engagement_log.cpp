@@ -116,6 +116,23 @@ std::uint32_t EngagementLog::add(const Part& part) {
   return static_cast<std::uint32_t>(passes_.size() - 1);
 }
 
+void EngagementLog::take_back_cut(std::uint32_t pass, const EngagementLook& look,
+                                  const EngagedWay& way) {
+  if (pass == kNoPass) return;
+  passes_[pass].sums.take_back(look, way);
+  EngagementOfTool& of_tool = tools_[tool_of_pass_[pass]];
+  of_tool.air_mm += way.length_mm;
+  of_tool.air_s += way.seconds;
+}
+
+void EngagementLog::take_back_air(const EngagedWay& way) {
+  EngagementOfTool& of_tool = tools_[tool_];
+  for (double* const mm : {&of_tool.feed_mm, &of_tool.air_mm})
+    *mm = std::max(0.0, *mm - way.length_mm);
+  for (double* const s : {&of_tool.feed_s, &of_tool.air_s}) *s = std::max(0.0, *s - way.seconds);
+  unmeasured_mm_ += way.length_mm;
+}
+
 void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds) {
   if (pass == kNoPass) {
     unmeasured_mm3_ += mm3;

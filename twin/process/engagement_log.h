@@ -61,6 +61,10 @@ class EngagementLog {
     unmeasured_mm_ += length_mm;
     if (listener_ != nullptr) listener_->on_unmeasured(length_mm);
   }
+  /// A part of a move of that pass, told as one in material, has removed none.
+  void take_back_cut(std::uint32_t pass, const EngagementLook& look, const EngagedWay& way);
+  /// A part of a move of the present tool, told as one in the air, has removed material.
+  void take_back_air(const EngagedWay& way);
   /// What a move of that pass has removed, on so much of its way and time as it was in material
   /// (EngagementSums::in_material_mm(), cut_s).
   void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds);

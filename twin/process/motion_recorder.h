@@ -24,9 +24,14 @@ class MotionRecorder {
   /// A move of that motion has been cut, of which there may be several. Numbers do not fall. Also
   /// of motions that are not reported on, which on_step() has not told of.
   virtual void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) = 0;
-  /// How the tool was engaged on that motion, or a part of it, of which there may be several:
-  /// before it is cut. Only where that is measured, and of motions of which it could be.
-  virtual void on_engaged(std::uint64_t /*number*/, const EngagementSums& /*sums*/) {}
+  /// How the tool was engaged on a part of that motion, as the report counts it; a look at nothing:
+  /// it was in the air. Parts in their order, once it is known what their moves have removed, some
+  /// of them behind on_cut() of later motions. Only where that is measured, and of what could be.
+  virtual void on_engaged(std::uint64_t /*number*/, const EngagementLook& /*look*/,
+                          const EngagedWay& /*way*/) {}
+  /// Of motions before that one on_engaged() has told all. From the first call on those behind it
+  /// are waited for; where nobody calls, nothing is told later than on_cut() of the next motion.
+  virtual void on_engaged_until(std::uint64_t /*number*/) {}
   /// The same of a tool that stands still: after it has cut.
   virtual void on_turned(std::uint64_t /*number*/, const TurnedWay& /*way*/) {}
 };
@@ -49,8 +54,12 @@ class MotionRecorders final : public MotionRecorder {
   void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override {
     for (MotionRecorder* const each : all_) each->on_cut(number, removed_mm3, depth_mm);
   }
-  void on_engaged(std::uint64_t number, const EngagementSums& sums) override {
-    for (MotionRecorder* const each : all_) each->on_engaged(number, sums);
+  void on_engaged(std::uint64_t number, const EngagementLook& look,
+                  const EngagedWay& way) override {
+    for (MotionRecorder* const each : all_) each->on_engaged(number, look, way);
+  }
+  void on_engaged_until(std::uint64_t number) override {
+    for (MotionRecorder* const each : all_) each->on_engaged_until(number);
   }
   void on_turned(std::uint64_t number, const TurnedWay& way) override {
     for (MotionRecorder* const each : all_) each->on_turned(number, way);

@@ -13,13 +13,14 @@
 
 namespace kerf {
 
-/// One producer, one consumer. At most kMaxBatches of kBatchMotions each wait (about 13 MB): a
+/// One producer, one consumer. At most kMaxBatches of kBatchMotions each wait (about 18 MB): a
 /// producer that is ahead waits, nothing is lost. Buffers are used again, so that in steady state
 /// nothing is allocated.
 class BatchQueue {
  public:
-  static constexpr std::size_t kBatchMotions = 4096;
-  static constexpr std::size_t kMaxBatches = 16;
+  /// So few that they stay within a core's own cache while they are looked at and cut.
+  static constexpr std::size_t kBatchMotions = 512;
+  static constexpr std::size_t kMaxBatches = 64;
 
   /// Copies the motions in. False once the queue is closed: the producer should stop.
   bool push(std::span<const Motion> motions);

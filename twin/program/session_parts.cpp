@@ -62,7 +62,8 @@ Result<std::unique_ptr<StockModel>> load_saved(StockKind kind, const std::string
                                                const StockSettings& settings) {
   if (kind == StockKind::kSheet) return as_stock(Sheet::load(path));
   if (kind == StockKind::kTurning) return load_turned(path, settings);
-  if (kind == StockKind::kOctree) return as_stock(Octree::load(path, settings.threads));
+  if (kind == StockKind::kOctree)
+    return as_stock(Octree::load(path, settings.threads, octree_kernel(settings.kernel)));
   if (kind == StockKind::kMmap) {
     return as_stock(MMap::load(path, settings.threads, settings.kernel));
   }

@@ -11,6 +11,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / kPi;
+/// In whole mm.
+constexpr double kShown_mm = 0.5;
 
 Json pair_of(double mean, double most) {
   return Json{{"mean", rounded(mean)}, {"most", rounded(most)}};
@@ -150,9 +152,10 @@ std::string engagement_text(const Engagement& engagement) {
   }
   const bool none = engagement.tools.empty() && engagement.turned.empty();
   if (none && engagement.unmeasured_mm <= 0) out += label + tr("no tool was in material\n");
-  if (engagement.unmeasured_mm > 0)
+  if (engagement.unmeasured_mm >= kShown_mm)
     out += label + trf("not measured: {:.0f} mm of undercutting tools, of tools that turn about on "
-                       "their way, or in a model that cannot be asked\n",
+                       "their way, in a model that cannot be asked, or where no look has seen "
+                       "what was removed\n",
                        engagement.unmeasured_mm);
   return out;
 }

@@ -18,7 +18,7 @@ constexpr std::string_view kColumns =
     "duration_s,tool,spindle_rpm,removed_mm3,depth_mm,removed_mm3_per_s";
 constexpr std::string_view kEngagementColumns =
     ",ae_mm,ap_mm,entry_deg,exit_deg,climb_share,plunge_share,cut_share,cut_mm3_per_s,"
-    "turned_mm_per_rev,chip_mm";
+    "turned_mm_per_rev,chip_mm,air_s";
 /// Rows go to the file by so many bytes.
 constexpr std::size_t kTextBytes = std::size_t{1} << 16;
 
@@ -86,6 +86,7 @@ Result<std::unique_ptr<MotionTable>> MotionTable::create(
 
 void MotionTable::begin() {
   waiting_.clear();
+  engaged_until_ = kNotWaiting;
   text_ = kColumns;
   if (with_engagement_) text_ += kEngagementColumns;
   text_ += "\r\n";
@@ -111,7 +112,6 @@ void MotionTable::on_step(std::uint64_t number, const Motion& m, const TimedStep
   Row& row = waiting_.emplace_back();
   row.number = number;
   row.duration_s = step.duration_s;
-  row.length_mm = step.length_mm;
   fmt::format_to(std::back_inserter(row.head), "{},{},{}", m.source.line,
                  m.source.file < files_.size() ? files_[m.source.file] : "", to_string(m.kind));
   append_place(m, row.head);
@@ -125,21 +125,35 @@ void MotionTable::on_step(std::uint64_t number, const Motion& m, const TimedStep
 
 void MotionTable::on_cut(std::uint64_t number, double removed_mm3, double depth_mm) {
   // Cuts come in order: those before have all of theirs.
-  while (!waiting_.empty() && waiting_.front().number < number) {
+  const std::uint64_t whole = std::min(number, engaged_until_);
+  while (!waiting_.empty() && waiting_.front().number < whole) {
     write(waiting_.front());
     waiting_.pop_front();
   }
-  if (waiting_.empty() || waiting_.front().number != number) return;
-  Row& row = waiting_.front();
-  row.removed_mm3 += removed_mm3;
-  row.depth_mm = std::max(row.depth_mm, depth_mm);
+  Row* const row = row_of(number);
+  if (row == nullptr) return;
+  row->removed_mm3 += removed_mm3;
+  row->depth_mm = std::max(row->depth_mm, depth_mm);
 }
 
-void MotionTable::on_engaged(std::uint64_t number, const EngagementSums& sums) {
-  if (waiting_.empty() || waiting_.back().number != number) return;
-  std::optional<EngagementSums>& engaged = waiting_.back().engaged;
-  if (!engaged) engaged.emplace();
-  engaged->add(sums);
+/// Null: it is not reported on, or has been written.
+MotionTable::Row* MotionTable::row_of(std::uint64_t number) {
+  const auto found =
+      std::lower_bound(waiting_.begin(), waiting_.end(), number,
+                       [](const Row& row, std::uint64_t wanted) { return row.number < wanted; });
+  return found != waiting_.end() && found->number == number ? &*found : nullptr;
+}
+
+void MotionTable::on_engaged(std::uint64_t number, const EngagementLook& look,
+                             const EngagedWay& way) {
+  Row* const row = row_of(number);
+  if (row == nullptr) return;
+  if (!row->engaged) row->engaged.emplace();
+  if (look.is_engaged()) {
+    row->engaged->add(look, way);
+  } else {
+    row->air_mm += way.length_mm, row->air_s += way.seconds;
+  }
 }
 
 void MotionTable::on_turned(std::uint64_t number, const TurnedWay& way) {
@@ -167,6 +181,7 @@ void MotionTable::write_turned(const TurningEngagement& sums) {
   write_cell(sums.cut_s > 0, sums.rate_mm3_per_s());
   write_cell(fed, sums.mean(sums.feed_sum));
   write_cell(fed, sums.mean(sums.chip_sum));
+  write_cell(sums.feed_mm > 0, sums.air_s);
 }
 
 void MotionTable::write_engaged(const Row& row) {
@@ -184,9 +199,11 @@ void MotionTable::write_engaged(const Row& row) {
                            kDegrees * sums.exit_sum, sums.climb_mm})
     write_cell(sums.cut_mm > 0, sums.mean(sum));
   write_cell(in_mm > 0, sums.plunge_mm / in_mm);
-  write_cell(row.length_mm > 0, std::min(1.0, in_mm / row.length_mm));
+  const double measured_mm = in_mm + row.air_mm;
+  write_cell(measured_mm > 0, in_mm / measured_mm);
   write_cell(sums.cut_s > 0, row.removed_mm3 / sums.cut_s);
   text_ += ",,";
+  write_cell(true, row.air_s);
 }
 
 void MotionTable::write(const Row& row) {

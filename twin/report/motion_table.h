@@ -27,12 +27,14 @@ namespace kerf {
 ///     plunge_share (of its way in material, straight down), cut_share (of its way, in material),
 ///     cut_mm3_per_s (over its time in material),
 ///     turned_mm_per_rev (the planned feed for each turn of a workpiece that turns), chip_mm (mean
-///     thickness of its chips: the former by the sine of the lead angle)
+///     thickness of its chips: the former by the sine of the lead angle),
+///     air_s (of its time, in no material; their sum over a tool's rows is that of the report)
 /// Of a tool that stands still while the workpiece turns there are ap_mm, cut_share and from
-/// cut_mm3_per_s on; of one that turns all but the last two. They are empty where there is none of
-/// that way; all of them of motions that were not measured. Columns may be added behind. About 2 us
-/// a row; keeps rows of motions whose cuts have not come yet. What cannot be replaced under its
-/// name (standard output) is written by commit() alone.
+/// cut_mm3_per_s on; of one that turns all but the two behind that. They are empty where there is
+/// none of that way; all of them of motions that were not measured. Where a part of a motion was
+/// not measured, shares are those of the rest. Columns may be added behind. About 2 us a row; keeps
+/// rows of motions whose cuts have not come yet. What cannot be replaced under its name (standard
+/// output) is written by commit() alone.
 class MotionTable final : public MotionRecorder {
  public:
   /// `renamed`: how a file is called. Error: the file cannot be written.
@@ -47,7 +49,8 @@ class MotionTable final : public MotionRecorder {
   void name_files(const std::vector<std::string>& files) override;
   void on_step(std::uint64_t number, const Motion& motion, const TimedStep& step) override;
   void on_cut(std::uint64_t number, double removed_mm3, double depth_mm) override;
-  void on_engaged(std::uint64_t number, const EngagementSums& sums) override;
+  void on_engaged(std::uint64_t number, const EngagementLook& look, const EngagedWay& way) override;
+  void on_engaged_until(std::uint64_t number) override { engaged_until_ = number; }
   void on_turned(std::uint64_t number, const TurnedWay& way) override;
 
  private:
@@ -57,13 +60,15 @@ class MotionTable final : public MotionRecorder {
     double duration_s = 0;
     double removed_mm3 = 0;
     double depth_mm = 0;
-    double length_mm = 0;
     std::optional<EngagementSums> engaged;
+    double air_mm = 0, air_s = 0;  ///< of what was measured
     std::optional<TurningEngagement> turned;
   };
   MotionTable(std::string path, std::function<std::string(std::string)> renamed,
               bool with_engagement);
+  static constexpr std::uint64_t kNotWaiting = ~std::uint64_t{0};
   void begin();
+  Row* row_of(std::uint64_t number);
   void write(const Row& row);
   void write_engaged(const Row& row);
   void write_turned(const TurningEngagement& sums);
@@ -78,6 +83,7 @@ class MotionTable final : public MotionRecorder {
   std::string text_;
   std::vector<std::string> files_;  ///< quoted
   std::deque<Row> waiting_;
+  std::uint64_t engaged_until_ = kNotWaiting;
 };
 
 /// Tables of the setups of a part as one, setup after setup, with a last column `setup`: 1, 2 ..;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/translate.h"
+#include "stock/cutter/turning_shape.h"
 #include "twin/job/load_text.h"
 #include "twin/report/compare_report.h"
 #include "twin/report/engagement_report.h"
@@ -102,7 +103,7 @@ void add_removed(std::string& out, const StockReport& s) {
 std::string without_teeth(const std::vector<ToolUse>& tools) {
   std::string out;
   for (const ToolUse& use : tools) {
-    if (use.teeth || use.removed_mm3 <= 0) continue;
+    if (use.teeth || use.removed_mm3 <= 0 || is_turning_shape(use.shape)) continue;
     out += fmt::format("{}T{}", out.empty() ? "" : ", ", use.number);
   }
   return out;

@@ -260,8 +260,15 @@ bool LiveView::obey(const ViewerCommand& command) {
           goes_on = false;
           if (options_.on_close) options_.on_close();
         }
+        if constexpr (std::is_same_v<Command, EntryCommand>) {
+          if (options_.on_entry) options_.on_entry(c.line, scene_now());
+        }
         if constexpr (std::is_same_v<Command, OpenCommand>) {
           if (options_.on_open) options_.on_open(c.path);
+        }
+        if constexpr (std::is_same_v<Command, JobCommand>) {
+          if (const std::string said = options_.on_job ? options_.on_job(c) : ""; !said.empty())
+            tell(said);
         }
         // A machine leads; a log can be held and hurried.
         if (!options_.log) return;
@@ -281,6 +288,15 @@ bool LiveView::obey(const ViewerCommand& command) {
       },
       command);
   return goes_on;
+}
+
+LiveScene LiveView::scene_now() const {
+  LiveScene now{stock_, status_};
+  if (now.status) {
+    const std::chrono::duration<double> since = Clock::now() - status_at_;
+    now.status->age_s += since.count();
+  }
+  return now;
 }
 
 /// In which way up it is seen.

@@ -36,6 +36,12 @@ struct LiveProgram {
   std::vector<NamedTool> tools;
 };
 
+/// What a view shows now.
+struct LiveScene {
+  std::shared_ptr<const StockModel> stock;  ///< null: nothing yet
+  std::optional<LiveStatus> status;         ///< its age_s that of now
+};
+
 struct LiveViewOptions {
   std::string title;
   std::string source_name;
@@ -58,6 +64,10 @@ struct LiveViewOptions {
   std::shared_ptr<const ViewedJob> job;
   /// Another file was asked for; empty: nothing is opened.
   std::function<void(const std::string&)> on_open;
+  /// Blank, tools or fixtures were changed in their fields. What it gives is told (empty: nothing).
+  std::function<std::string(const JobCommand&)> on_job;
+  /// A start at that line of the program was asked about; empty: nobody answers.
+  std::function<void(int line, const LiveScene& now)> on_entry;
 };
 
 /// Of a machine, for Moment::link_poses: where it stands while the tool is there. Empty: it cannot
@@ -126,6 +136,7 @@ class LiveView final : public LiveObserver {
   void note_tool(int tool, const Cutter* cutter, News& news);
   void note_labels(std::span<const CutLabel> labels, News& news);
   void note_uses(std::span<const CutLabel> labels, News& news);
+  LiveScene scene_now() const;
   void stand(SceneSetup& setup) const;
   std::shared_ptr<const PickedPoint> who_cut(const Vec3& point_mm) const;
 

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -35,6 +37,12 @@ constexpr float kEdgeBegin = 0.16f, kEdgeFull = 0.47f, kJumpBegin_px = 4.0f;
 constexpr float kOcclusionReach = 0.05f;
 constexpr int kTaps = 10;
 constexpr float kTapBias = 0.06f, kOcclusionStrength = 3.2f;
+/// Pixels whose normals are those of their neighbours need one ray.
+constexpr float kOneRay = 0.999999f;
+/// Where they differ by no more than that (8 degrees), and lie no farther off the plane through
+/// those on both sides, nothing hides between them: it is the plane, but for its normals, if it is
+/// not seen too flatly.
+constexpr float kEvenNormals = 0.99f, kEven_px = 0.5f, kLeastFacing = 0.2f;
 
 Box material_box(const HeightGrid& grid) {
   Box box;
@@ -87,12 +95,21 @@ class PartPainter {
         unproject_(camera.unproject()),
         normals_(size_px, glm::vec4(0)),
         depths_(size_px, 1.0f),
+        rays_(size_px, Rays::kOne),
         open_((size_px + 1) / 2, 1.0f),
         edges_(size_px, 0.0f) {}
 
   Picture paint() {
     rows(
-        size_px_.y, [this](int x, int y) { cast(x, y); }, size_px_.x);
+        size_px_.y, [this](int x, int y) { cast_middle(x, y); }, size_px_.x);
+    rows(
+        size_px_.y, [this](int x, int y) { rays_.at(x, y) = rays_of(x, y); }, size_px_.x);
+    rows(
+        size_px_.y,
+        [this](int x, int y) {
+          if (rays_.near(x, y) != Rays::kOne) cast(x, y);
+        },
+        size_px_.x);
     rows((size_px_.y + 1) / 2, [this](int x, int y) { occlude(x, y); }, (size_px_.x + 1) / 2);
     rows(
         size_px_.y, [this](int x, int y) { find_edge(x, y); }, size_px_.x);
@@ -106,6 +123,10 @@ class PartPainter {
   const std::vector<float>& depths() const { return depths_.values(); }
 
  private:
+  /// What a pixel needs: the ray through its middle, the normals of 2 x 2 about that, or as many
+  /// rays.
+  enum class Rays : std::uint8_t { kOne, kNormals, kFour };
+
   template <class Work>
   void rows(int count, const Work& work, int width) const {
     for_each_piece(static_cast<std::size_t>(count), threads_, 2, [&](std::size_t y) {
@@ -124,6 +145,8 @@ class PartPainter {
     return glm::vec3(tangent(at_x, at_y), -1.0f) * distance_mm(depths_.near(at_x, at_y));
   }
 
+  void cast_middle(int x, int y);
+  Rays rays_of(int x, int y) const;
   void cast(int x, int y);
   void occlude(int x, int y);
   void find_edge(int x, int y);
@@ -137,24 +160,71 @@ class PartPainter {
   glm::vec4 unproject_;
   Layer<glm::vec4> normals_;  ///< mean in view space, and coverage
   Layer<float> depths_;
+  Layer<Rays> rays_;
   Layer<float> open_;  ///< at half the size
   Layer<float> edges_;
 };
 
+void PartPainter::cast_middle(int x, int y) {
+  const Ray ray = frame_.ray(x + 0.5, y + 0.5);
+  SurfaceHit hit;
+  if (!surface_.trace(ray, &hit)) return;
+  normals_.at(x, y) =
+      glm::vec4(glm::mat3(camera_.view_from_world()) * surface_.normal(ray, hit), 1.0f);
+  depths_.at(x, y) = frame_.depth(ray, hit.t);
+}
+
+PartPainter::Rays PartPainter::rays_of(int x, int y) const {
+  const glm::vec4& normal = normals_.near(x, y);
+  const float at_mm = distance_mm(depths_.near(x, y));
+  const float even_mm = kEven_px * camera_.px_mm_at_1mm() * at_mm;
+  float least = 1;
+  for (const glm::ivec2& way : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
+    const glm::vec4& a = normals_.near(x + way.x, y + way.y);
+    const glm::vec4& b = normals_.near(x - way.x, y - way.y);
+    if (a.w != normal.w || b.w != normal.w) return Rays::kFour;
+    if (normal.w == 0) continue;
+    least = std::min({least, glm::dot(glm::vec3(a), glm::vec3(normal)),
+                      glm::dot(glm::vec3(b), glm::vec3(normal))});
+    const float between =
+        0.5f * (depths_.near(x + way.x, y + way.y) + depths_.near(x - way.x, y - way.y));
+    if (least < kEvenNormals || std::abs(distance_mm(between) - at_mm) > even_mm)
+      return Rays::kFour;
+  }
+  if (least >= kOneRay) return Rays::kOne;
+  const glm::vec3 to_eye = unit(glm::vec3(-tangent(x, y), 1.0f));
+  return glm::dot(glm::vec3(normal), to_eye) > kLeastFacing ? Rays::kNormals : Rays::kFour;
+}
+
+/// The mean of 2 x 2 rays; on an even surface they meet the plane through its middle.
 void PartPainter::cast(int x, int y) {
   const glm::mat3 view_from_world(camera_.view_from_world());
+  const bool is_even = rays_.near(x, y) == Rays::kNormals;
+  const Ray middle = frame_.ray(x + 0.5, y + 0.5);
+  const float at_mm = distance_mm(depths_.near(x, y));
+  const Vec3 out(glm::transpose(view_from_world) * glm::vec3(normals_.near(x, y)));
+  const double above =
+      is_even ? glm::dot(out, static_cast<double>(at_mm) * middle.direction_mm) : 0;
+  const auto within_mm = static_cast<double>(2 * kEven_px * camera_.px_mm_at_1mm() * at_mm);
   glm::vec4 normals(0);
   float depths = 0;
   for (unsigned sample = 0; sample < 4; ++sample) {
     const Ray ray =
         frame_.ray(x + ((sample & 1u) ? 0.75 : 0.25), y + ((sample & 2u) ? 0.75 : 0.25));
+    if (is_even) {
+      const double t = above / glm::dot(out, ray.direction_mm);
+      if (const std::optional<glm::vec3> normal = surface_.normal_beside(ray, t, within_mm)) {
+        normals += glm::vec4(view_from_world * *normal, 1.0f);
+        depths += depths_.near(x, y);
+        continue;
+      }
+    }
     SurfaceHit hit;
     if (!surface_.trace(ray, &hit)) continue;
     normals += glm::vec4(view_from_world * surface_.normal(ray, hit), 1.0f);
     depths += frame_.depth(ray, hit.t);
   }
-  if (normals.w == 0) return;
-  depths_.at(x, y) = depths / normals.w;
+  depths_.at(x, y) = normals.w > 0 ? depths / normals.w : 1.0f;
   normals_.at(x, y) = 0.25f * normals;
 }
 

@@ -451,9 +451,29 @@ glm::vec3 HeightSurface::normal(const Ray& world_ray, const SurfaceHit& hit) con
     const bool across_x = ray.t_at_x(hit.i + (step_x < 0)) >= ray.t_at_y(hit.j + (step_y < 0));
     return wall_normal(hit.i, hit.j, across_x, across_x ? step_x : step_y, across_x ? v : u);
   }
-  const SurfaceTile& at = tile(hit.i / kCells, hit.j / kCells);
+  return top_normal(hit.i, hit.j, top, u, v);
+}
+
+std::optional<glm::vec3> HeightSurface::normal_beside(const Ray& world_ray, double t,
+                                                      double within_mm) const {
+  const GridRay ray = to_grid(world_ray);
+  const double x = ray.x + t * ray.dx, y = ray.y + t * ray.dy;
+  const double i = std::floor(x), j = std::floor(y);
+  if (!(i >= 0 && j >= 0 && i < grid_->nx() && j < grid_->ny())) return std::nullopt;
+  const CellTop top = cell(static_cast<int>(i), static_cast<int>(j));
+  if (top.moved != nullptr || !top.is_solid) return std::nullopt;
+  const double u = x - i, v = y - j;
+  const double height = height_in(top, side_of_diagonal(top, u, v) <= 0, u, v);
+  if (std::abs(height - ray.z_at(t)) > within_mm) return std::nullopt;
+  return top_normal(static_cast<int>(i), static_cast<int>(j), top, u, v);
+}
+
+/// Between the normals of a cell's corners.
+glm::vec3 HeightSurface::top_normal(int i, int j, const CellTop& top, double u, double v) const {
+  const SurfaceTile& at = tile(i / kCells, j / kCells);
   if (!at.detail) return {0, 0, 1};
-  const int x = hit.i % kCells, y = hit.j % kCells;
+  const bool is_below = side_of_diagonal(top, u, v) <= 0;
+  const int x = i % kCells, y = j % kCells;
   std::array<std::uint32_t, 4> packed;
   const auto code = at.detail->code[static_cast<std::size_t>(y * kCells + x)];
   if (code >> 2 != 0) {

@@ -3,6 +3,7 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/geometry.h"
@@ -45,6 +46,9 @@ class HeightSurface {
   /// Unit normal, out of the material, as the patches have it there: on tops between the normals of
   /// the corners, on walls level and across the wall's course (WallCourse). O(1).
   glm::vec3 normal(const Ray& ray, const SurfaceHit& hit) const;
+  /// That of the top where the ray is at t, if it is no farther above or below it than that; none:
+  /// it is, or there is no top, or one with moved corners. O(1).
+  std::optional<glm::vec3> normal_beside(const Ray& ray, double t, double within_mm) const;
 
   const HeightGrid* grid() const { return grid_.get(); }
 
@@ -62,6 +66,7 @@ class HeightSurface {
   bool meet_moved(const GridRay& ray, int i, int j, double t0, double t1, SurfaceHit* hit) const;
   bool is_over_material(const Vec2& at, int* i, int* j) const;
   glm::vec3 moved_normal(const GridRay& ray, const SurfaceHit& hit, const CellTop& top) const;
+  glm::vec3 top_normal(int i, int j, const CellTop& top, double u, double v) const;
   std::vector<Box> changes(const HeightGrid& next, std::vector<int>* tiles) const;
   void make_tiles(const std::vector<int>& tiles, int threads);
   glm::vec3 wall_normal(int i, int j, bool across_x, int step, double along) const;

@@ -229,8 +229,9 @@ class FileView {
     if (!ImGui::BeginPopup("line menu")) return;
     const int line = scroll_.menu_line;
     ImGui::TextColored(theme::kDim, "%s %d", context_.word(Text::kLine), line);
-    if (ImGui::MenuItem(context_.word(Text::kJumpToHere))) seek(line);
-    if (ImGui::MenuItem(context_.word(Text::kRunToHere))) {
+    const bool is_played = moment_.state != PlayState::kFollowing;
+    if (is_played && ImGui::MenuItem(context_.word(Text::kJumpToHere))) seek(line);
+    if (is_played && ImGui::MenuItem(context_.word(Text::kRunToHere))) {
       scroll_.follows = true;
       context_.commands->push(RunToLineCommand{is_main() ? "" : file_.path(), line});
     }
@@ -239,7 +240,7 @@ class FileView {
       context_.commands->push(EntryCommand{line});
     }
     const Text text = has_breakpoint(line) ? Text::kClearBreakpoint : Text::kSetBreakpoint;
-    if (ImGui::MenuItem(context_.word(text))) toggle_breakpoint(line);
+    if (is_played && ImGui::MenuItem(context_.word(text))) toggle_breakpoint(line);
     ImGui::EndPopup();
   }
 

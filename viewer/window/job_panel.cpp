@@ -26,9 +26,7 @@ void draw_label(const PanelContext& context, Text label) {
 /// True when Enter ends it.
 bool draw_field(const PanelContext& context, Text label, const char* id, std::string* value) {
   draw_label(context, label);
-  ImGui::SetNextItemWidth(-1.0f);
-  return ImGui::InputTextWithHint(id, context.word(Text::kByItself), value,
-                                  ImGuiInputTextFlags_EnterReturnsTrue);
+  return draw_text_field(context, id, context.word(Text::kByItself), value);
 }
 
 bool draw_tools(const PanelContext& context) {
@@ -38,16 +36,17 @@ bool draw_tools(const PanelContext& context) {
   for (auto& [number, shape] : edit.tools) {
     ImGui::PushID(number);
     ImGui::AlignTextToFramePadding();
-    ImGui::Text("T%d", number);
-    ImGui::SameLine(46.0f * context.scale);
-    ImGui::SetNextItemWidth(-1.0f);
     const auto& tools = context.shown.job->tools;
     const auto known = std::find_if(tools.begin(), tools.end(),
                                     [n = number](const JobTool& tool) { return tool.number == n; });
-    const std::string hint = known == tools.end() ? std::string("flat:6") : known->in_use;
-    is_entered |= ImGui::InputTextWithHint("##shape", hint.c_str(), &shape,
-                                           ImGuiInputTextFlags_EnterReturnsTrue);
-    if (known != tools.end() && ImGui::IsItemHovered() && !known->in_use.empty()) {
+    const bool has_shape = known != tools.end() && !known->in_use.empty();
+    // What the program uses, and nobody has described.
+    const bool lacks_shape = known != tools.end() && !has_shape && shape.empty();
+    ImGui::TextColored(lacks_shape ? theme::kWarning : theme::kText, "T%d", number);
+    ImGui::SameLine(46.0f * context.scale);
+    const std::string hint = has_shape ? known->in_use : "flat:6";
+    is_entered |= draw_text_field(context, fmt::format("##shape{}", number), hint, &shape);
+    if (has_shape && ImGui::IsItemHovered()) {
       ImGui::SetTooltip("%s (%s)", known->in_use.c_str(), known->origin.c_str());
     }
     ImGui::PopID();
@@ -60,8 +59,23 @@ bool draw_tools(const PanelContext& context) {
   return is_entered;
 }
 
+bool draw_fixtures(const PanelContext& context) {
+  JobEdit& edit = context.state->job;
+  bool is_entered = false;
+  draw_label(context, Text::kFixtures);
+  for (std::size_t n = 0; n < edit.fixtures.size(); ++n) {
+    is_entered |= draw_text_field(context, fmt::format("##fixture{}", n), "vise:100:60:30",
+                                  &edit.fixtures[n]);
+  }
+  if (ImGui::Button(context.word(Text::kAddFixture))) edit.fixtures.emplace_back();
+  return is_entered;
+}
+
 JobCommand command_of(const JobEdit& edit) {
-  JobCommand command{edit.stock, edit.cell, edit.model, {}};
+  JobCommand command{edit.stock, edit.cell, edit.model, {}, {}};
+  for (const std::string& fixture : edit.fixtures) {
+    if (!fixture.empty()) command.fixtures.push_back(fixture);
+  }
   for (const auto& [number, shape] : edit.tools) {
     if (!shape.empty()) command.tools.emplace_back(number, shape);
   }
@@ -84,7 +98,9 @@ void draw_command(const PanelContext& context) {
 }  // namespace
 
 JobEdit edit_of(const ViewedJob& job) {
-  JobEdit edit{job.stock, job.cell, job.model, {}, 1};
+  JobEdit edit;
+  edit.stock = job.stock, edit.cell = job.cell, edit.model = job.model;
+  edit.fixtures = job.fixtures;
   for (const JobTool& tool : job.tools) edit.tools[tool.number] = tool.given;
   while (edit.tools.count(edit.new_tool) > 0) ++edit.new_tool;
   return edit;
@@ -115,6 +131,7 @@ void draw_job_tab(const PanelContext& context) {
   }
   draw_in_use(context, job.model_in_use);
   is_asked |= draw_tools(context);
+  is_asked |= draw_fixtures(context);
   ImGui::Separator();
   is_asked |= ImGui::Button(context.word(Text::kApply));
   if (is_asked) context.commands->push(command_of(edit));

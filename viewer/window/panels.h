@@ -99,7 +99,10 @@ struct PictureChoice {
 struct JobEdit {
   std::string stock, cell, model;
   std::map<int, std::string> tools;  ///< SHAPE text by number; empty: not given
+  std::vector<std::string> fixtures;
   int new_tool = 1;
+  bool is_upper = false;  ///< of those keys
+  std::string typed_id;   ///< of the field whose keys are on the screen; empty: of none
 };
 
 /// A sentence in the status line. A text of the window itself is shown in the language in use,
@@ -161,6 +164,7 @@ struct PanelContext {
   PanelState* state;
   CommandQueue* commands;
   Measures measures;
+  bool has_keyboard;  ///< In a tab of another program there is the mouse alone.
 
   const char* word(Text which) const { return text(which); }
 };
@@ -173,6 +177,8 @@ struct PanelRoom {
 /// `has_curve`: there is a program, whose curve may be shown.
 PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale,
                      bool has_curve);
+/// The info panel has no room beside the picture: ViewSettings::shows_info_alone.
+bool is_narrow_for_info(float window_px, float scale);
 /// What of curves and colours there may be for what is shown.
 bool is_offered(CurveChoice curve, const ProgramTimeline& timeline);
 bool is_offered(ColorBy mode, const ProgramTimeline& timeline, const SceneSetup& setup);
@@ -212,6 +218,10 @@ std::optional<std::string> chosen_path(PictureChoice* choice);
 void draw_empty_hint(const PanelContext& context, glm::vec2 window_px, const PanelRoom& room);
 /// Blank, cells, model and tools, to be changed, and the command that is equal to them.
 void draw_job_tab(const PanelContext& context);
+/// A line of text as wide as its panel, `hint` where it is empty. Without a keyboard a click opens
+/// keys to be clicked beneath it. True when Enter ends it.
+bool draw_text_field(const PanelContext& context, const std::string& id, const std::string& hint,
+                     std::string* value);
 /// The fields as the job has them.
 JobEdit edit_of(const ViewedJob& job);
 

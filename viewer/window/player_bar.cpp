@@ -239,12 +239,19 @@ struct ToolButton {
   bool begins_group = false;
 };
 
+constexpr float kInfoWidth_px = 300.0f;
+constexpr float kSmallestPicture_px = 160.0f;
 constexpr glm::vec2 kToolPadding_px{4.0f, 3.0f};
 constexpr float kToolGap_px = 3.0f;
 constexpr float kGroupGap_px = 15.0f;
 
-std::vector<ToolButton> tool_buttons(const ViewSettings& settings, bool measures) {
+std::vector<ToolButton> tool_buttons(const ViewSettings& settings, bool measures, bool is_narrow) {
   std::vector<ToolButton> buttons;
+  // Who has no keys, in a screen of LinuxCNC, gets to the panel by it.
+  if (is_narrow) {
+    buttons.push_back(
+        {Text::kInfo, Action::kInfoPanel, Text::kInfoPanel, settings.shows_info_alone});
+  }
   const bool is_flat = settings.flat != FlatView::kNone;
   constexpr std::array kViews{
       std::pair{Text::kFit, Action::kFit},     std::pair{Text::kIsometric, Action::kIsometric},
@@ -284,9 +291,10 @@ std::vector<ImVec2> tool_places(const std::vector<ToolButton>& buttons, float wi
   return places;
 }
 
-float toolbar_room(const ViewSettings& settings, float width, float scale) {
+float toolbar_room(const ViewSettings& settings, float width, bool is_narrow, float scale) {
   const float inside = width - 2.0f * ImGui::GetStyle().WindowPadding.x;
-  const std::vector<ImVec2> places = tool_places(tool_buttons(settings, false), inside, scale);
+  const std::vector<ImVec2> places =
+      tool_places(tool_buttons(settings, false, is_narrow), inside, scale);
   return std::round(kToolbarHeight_px * scale + places.back().y);
 }
 
@@ -328,11 +336,15 @@ void seek_with_mouse(const PanelContext& context, double time_s) {
   }
 }
 
+bool is_narrow_for_info(float window_px, float scale) {
+  return window_px < scale * (kInfoWidth_px + kSmallestPicture_px);
+}
+
 PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float scale,
                      bool has_curve) {
   constexpr float kCodeWidth_px = 290.0f;
-  constexpr float kInfoWidth_px = 300.0f;
-  constexpr float kSmallestPicture_px = 160.0f;
+  /// Of the toolbar, beside a panel that stands alone: the button by which it goes.
+  constexpr float kOneButton_px = 64.0f;
   PanelRoom room;
   const bool shows_curve = has_curve && settings.curve != CurveChoice::kNone;
   const float bar_px = kBarHeight_px + (shows_curve ? kCurveHeight_px : 0.0f);
@@ -346,11 +358,18 @@ PanelRoom panel_room(glm::vec2 window_px, const ViewSettings& settings, float sc
     if (left_over < std::min(wanted, scale * usual_px)) return 0.0f;
     return std::min(wanted, std::floor(left_over));
   };
-  if (settings.shows_info) room.right = width_px(settings.info_width_px, kInfoWidth_px);
-  left_over -= room.right;
+  const bool is_narrow = is_narrow_for_info(window_px.x, scale);
+  if (is_narrow && settings.shows_info_alone) {
+    const float most = std::max(0.0f, window_px.x - scale * kOneButton_px);
+    room.right = std::floor(std::min(scale * kInfoWidth_px, most));
+    left_over = 0.0f;
+  } else if (settings.shows_info) {
+    room.right = width_px(settings.info_width_px, kInfoWidth_px);
+    left_over -= room.right;
+  }
   if (settings.shows_code) room.left = width_px(settings.code_width_px, kCodeWidth_px);
   if (room.bottom > 0.0f) {
-    room.top = toolbar_room(settings, window_px.x - room.left - room.right, scale);
+    room.top = toolbar_room(settings, window_px.x - room.left - room.right, is_narrow, scale);
     // A picture that finds no room below several rows is worth more than all of the buttons.
     if (window_px.y - room.bottom - room.top < scale * kSmallestPicture_px) {
       room.top = std::round(scale * kToolbarHeight_px);
@@ -422,7 +441,8 @@ void draw_toolbar(const PanelContext& context, glm::vec2 window_px, const PanelR
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {std::round(kToolPadding_px.x * context.scale),
                                                    std::round(kToolPadding_px.y * context.scale)});
   const std::vector<ToolButton> buttons =
-      tool_buttons(*context.settings, context.state->inspection.measures);
+      tool_buttons(*context.settings, context.state->inspection.measures,
+                   is_narrow_for_info(window_px.x, context.scale));
   const ImVec2 corner = ImGui::GetCursorPos();
   const std::vector<ImVec2> places =
       tool_places(buttons, ImGui::GetContentRegionAvail().x, context.scale);

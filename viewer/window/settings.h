@@ -64,6 +64,8 @@ struct ViewSettings {
   bool is_perspective = true;
   bool shows_code = true;
   bool shows_info = true;
+  /// Where it is too narrow for both, the panel stands in the place of the picture. Not kept.
+  bool shows_info_alone = false;
   bool shows_counters = false;
   CurveChoice curve = CurveChoice::kRate;
   FlatView flat = FlatView::kNone;

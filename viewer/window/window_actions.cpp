@@ -117,7 +117,10 @@ void Window::Impl::act_on_panels(Action action) {
       settings_.shows_code = !settings_.shows_code;
       break;
     case Action::kInfoPanel:
-      settings_.shows_info = !settings_.shows_info;
+      if (is_narrow_for_info(ImGui::GetIO().DisplaySize.x, scale_))
+        settings_.shows_info_alone = !settings_.shows_info_alone;
+      else
+        settings_.shows_info = !settings_.shows_info;
       break;
     case Action::kCounters:
       settings_.shows_counters = !settings_.shows_counters;

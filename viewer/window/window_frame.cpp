@@ -396,7 +396,8 @@ void Window::Impl::draw_panels(const PanelRoom& room, glm::vec2 display) {
                              .settings = &settings_,
                              .state = &state_,
                              .commands = &commands_,
-                             .measures = measures};
+                             .measures = measures,
+                             .has_keyboard = !embedding_};
   draw_scene_legend(context, area_top_px_, projection_.size_px);
   draw_inspection(context, projection_, area_top_px_);
   if (state_.shows_entry) draw_entry_way(context, projection_, area_top_px_);

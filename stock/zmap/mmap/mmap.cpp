@@ -117,8 +117,8 @@ MMap::MMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MMap::~MMap() = default;
 
 Result<std::unique_ptr<MMap>> MMap::create(const ZMapOptions& options) {
-  Result<TileGrid> grid =
-      make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells, tr("an M-map"));
+  Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, ZMap::kMaxCells,
+                                          tr("an M-map"), options.keeps_cut_ids);
   if (!grid) return Error{grid.error()};
   const double solid_mm3 = volume_of(*grid);
   auto impl = std::make_unique<Impl>(std::move(*grid), solid_mm3, options.kernel, options.threads);

@@ -12,6 +12,7 @@
 #include "base/translate.h"
 #include "stock/zmap/mmap/mmap.h"
 #include "stock/zmap/mmap/mmap_state.h"
+#include "stock/zmap/state_file.h"
 #include "stock/zmap/zmap.h"
 
 namespace kerf {

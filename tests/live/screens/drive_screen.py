@@ -46,6 +46,14 @@ def show_tab():
         subprocess.run(["xdotool", "mousemove", *place.split(","), "click", "1"], check=False)
 
 
+def click_through(places):
+    """Clicks, each of them with a picture after it: "X,Y X,Y"."""
+    for n, place in enumerate(places.split(), 1):
+        subprocess.run(["xdotool", "mousemove", *place.split(","), "sleep", "0.3", "click", "1"], check=False)
+        time.sleep(1.5)
+        picture(f"click{n}.png")
+
+
 def main():
     program = sys.argv[1]
     own = os.path.join(os.getcwd(), "part.ngc")
@@ -86,6 +94,7 @@ def main():
         result["time_left_s"] = pin("kerf.time-left")
         time.sleep(4)
         picture("loaded.png")
+        click_through(os.environ.get("KERF_CLICKS", ""))
         begin = time.monotonic()
         machine.command.mode(drive.linuxcnc.MODE_AUTO)  # a screen may have left it
         machine.command.wait_complete()

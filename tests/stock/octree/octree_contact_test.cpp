@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "stock/octree/sweep.h"
 #include "stock/octree/sweep_kernel.h"
-#include "stock/octree/turn_groups.h"
 #include "tests/stock/octree/octree_samples.h"
 
 namespace kerf::test {
@@ -102,52 +102,43 @@ TEST(OctreeContact, ManyMovesAreOneWay) {
   EXPECT_FALSE(first_contact_of(*tree, make_cutter("flat:6"), moves, kTolerance_mm, {}));
 }
 
-TEST(OctreeContact, TheBoundOfATurnIsNeverAboveItsPieces) {
+TEST(OctreeContact, ATurningPieceStaysByItsWayWithoutTheTurn) {
   using namespace octree;
   const auto bodies = tool_bodies(make_cutter("bull:6:1"));
   ASSERT_TRUE(bodies);
   std::mt19937 engine(11);
   std::uniform_real_distribution<double> place(-25, 25);
   const Box everywhere{Vec3(-60), Vec3(60)};
-  const BrickTree tree(Lattice::over({Vec3(-30), Vec3(30)}, 1));
   const SweepKernel kernel = pick_kernel(KernelChoice::kAuto);
-  int sure = 0, groups_seen = 0;
-  for (int round = 0; round < 40; ++round) {
-    std::vector<CutMove> moves;
-    Vec3 tip{0.4 * place(engine), 0.4 * place(engine), place(engine) / 5}, axis(0, 0, 1);
-    for (int i = 0; i < 3; ++i) {
-      CutMove move = line(tip, tip + Vec3(0.4, 0.01 * place(engine), -0.2), 0, axis);
-      axis = glm::normalize(axis + Vec3(0.04, 0.001 * place(engine), 0));
-      move.axis_to = axis;
-      tip = move.to_mm;
-      moves.push_back(move);
-    }
+  int pieces = 0, apart = 0;
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 tip{0.4 * place(engine), 0.4 * place(engine), place(engine) / 5};
+    CutMove move = line(tip, tip + Vec3(0.4, 0.01 * place(engine), -0.2), 0, Vec3(0, 0, 1));
+    move.axis_to = glm::normalize(Vec3(0.05, 0.001 * place(engine), 1));
     std::vector<Sweep> sweeps;
-    for (const CutMove& move : moves)
-      append_sweeps(*bodies, move, 0, {everywhere, 0.002, 0}, sweeps);
-    const TurnGroups groups(sweeps, tree.lattice());
+    append_sweeps(*bodies, move, 0, {everywhere, 0.002, 0}, sweeps);
     for (const Sweep& sweep : sweeps) {
-      const TurnGroup* group = groups.of(sweep);
-      if (!group) continue;
-      ++groups_seen;
+      ASSERT_EQ(sweep.kind, Sweep::Kind::kTurn);
+      ++pieces;
+      Sweep fixed = sweep;
+      fixed.kind = Sweep::Kind::kRamp;
+      fixed.w = sweep.mean_w;
+      fixed.bend_mm = 0;
       alignas(64) double p[3][8], f[8], bound[8];
       for (auto& row : p)
         for (double& value : row) value = place(engine);
       kernel.distance(sweep, 8, p[0], p[1], p[2], f);
+      kernel.distance(fixed, 8, p[0], p[1], p[2], bound);
       for (int n = 0; n < 8; ++n) {
-        const double reach =
-            glm::length(Vec3(p[0][n], p[1][n], p[2][n]) - group->middle_mm) + group->tips_mm;
-        Sweep whole = group->whole;
-        whole.bend_mm = bend_mm(reach, group->way_mm, group->turn_rad);
-        kernel.turn_bound(whole, 0.3, 8, p[0], p[1], p[2], bound);
-        const double off = 1.01 * (group->off_mm + group->off_rad * reach) + 1e-6;
-        EXPECT_LE(bound[n] - off, f[n] + 1e-7);
-        sure += bound[n] - off > 0 && f[n] < 5;
+        const double reach = glm::length(Vec3(p[0][n], p[1][n], p[2][n]) - sweep.origin_mm) +
+                             glm::length(sweep.step);
+        EXPECT_LE(std::abs(bound[n] - f[n]), sweep.off_rad * reach + 1e-6);
+        apart += std::abs(bound[n] - f[n]) > 0.1 * sweep.off_rad * reach;
       }
     }
   }
-  EXPECT_GT(groups_seen, 100);
-  EXPECT_GT(sure, 100) << "a bound that says nothing would pass as well";
+  EXPECT_GT(pieces, 200);
+  EXPECT_GT(apart, 200) << "ways that do not turn would pass as well";
 }
 
 }  // namespace

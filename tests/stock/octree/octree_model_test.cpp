@@ -81,6 +81,38 @@ TEST(OctreeModel, KernelsGiveTheSameBits) {
   }
 }
 
+/// Whole cuts: of tools that stand upright, lean, and turn on the way.
+TEST(OctreeModel, KernelsLeaveTheSameWorkpiece) {
+  using octree::KernelChoice;
+  std::vector<KernelChoice> kernels{KernelChoice::kAuto};
+  if (octree::has_avx2()) kernels.push_back(KernelChoice::kAvx2);
+  if (octree::has_avx512()) kernels.push_back(KernelChoice::kAvx512);
+  for (const double lean : {0.0, 0.3}) {
+    std::vector<CutMove> moves = wandering_moves(14, 19);
+    for (std::size_t n = 0; n < moves.size(); ++n) {
+      const double way = static_cast<double>(n);
+      moves[n].axis_from = glm::normalize(Vec3(lean * std::sin(way), lean * std::cos(way), 1));
+      moves[n].axis_to =
+          n % 3 == 0 ? moves[n].axis_from : glm::normalize(Vec3(lean * std::sin(way + 1), 0, 1));
+    }
+    for (const char* shape : {"flat:4", "ball:5", "bull:6:1.5", "taper:2:10:0.6"}) {
+      const auto left_by = [&](KernelChoice kernel) {
+        OctreeOptions options;
+        options.blank = parse_blank(kBlank).value();
+        options.cell_mm = 0.5;
+        options.kernel = kernel;
+        const std::unique_ptr<Octree> tree = std::move(Octree::create(options).value());
+        const double removed = removed_mm3(cut(*tree, make_cutter(shape), moves));
+        EXPECT_GT(removed, 1) << shape;
+        return std::pair(tree->digest(), removed);
+      };
+      const auto plain = left_by(KernelChoice::kScalar);
+      for (const KernelChoice kernel : kernels)
+        EXPECT_EQ(left_by(kernel), plain) << shape << ", kernel " << static_cast<int>(kernel);
+    }
+  }
+}
+
 TEST(OctreeModel, CuttingTwiceRemovesNothing) {
   const std::vector<CutMove> moves = wandering_moves(12, 7);
   for (const char* shape : {"ball:5", "flat:4", "bull:6:1", "tslot:7:2:3"}) {

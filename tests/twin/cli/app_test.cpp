@@ -53,7 +53,7 @@ TEST(RunOptions, AllFaultsComeAtOnce) {
             "kerf: error: --block-delete: 'maybe' is not allowed; must be on or off\n"
             "kerf: error: --model: 'voxels' is no model; allowed: auto, zmap, mmap, octree, sheet, "
             "turning\n"
-            "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, avx2\n"
+            "kerf: error: --kernel: 'gpu' is no kernel; allowed: auto, scalar, sse2, avx2, neon\n"
             "kerf: error: --cell: 0 is not allowed; must be above 0 and at most 1000 (mm)\n"
             "kerf: error: --margin: -1 is not allowed; must be at least 0 and at most 10000 (mm)\n"
             "kerf: error: --threads: 1.5 is not a whole number\n"

@@ -297,6 +297,16 @@ TEST_F(ViewFiles, ALogWithoutADisplayNamesTheWayWithoutOne) {
 }
 
 /// With a window.
+/// As a panel is, with its letters, and nothing of the scene.
+bool is_dark(const Picture& picture, glm::ivec2 from_px, glm::ivec2 to_px) {
+  double sum = 0;
+  for (int y = from_px.y; y < to_px.y; ++y) {
+    for (int x = from_px.x; x < to_px.x; ++x)
+      sum += picture.rgb.at(3 * std::size_t(y * picture.width_px + x));
+  }
+  return sum < 80.0 * (to_px.x - from_px.x) * (to_px.y - from_px.y);
+}
+
 class ViewWindow : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -552,10 +562,7 @@ TEST_F(ViewWindow, AnEmptyWindowOpensAProgramByName) {
   kerf_ = std::make_unique<WindowedKerf>(call_of({"view"}));
   ASSERT_TRUE(kerf_->is_titled("kerf$"));
   const Picture empty = kerf_->settled();
-  kerf_->key("ctrl+o");
-  std::this_thread::sleep_for(std::chrono::seconds(1));
-  kerf_->type(program_);
-  kerf_->key("Return");
+  kerf_->open_file(program_);
   ASSERT_TRUE(kerf_->is_titled("kerf - part.ngc"));
   EXPECT_TRUE(kerf_->changes_from(empty));
   kerf_->key("Q");
@@ -713,6 +720,14 @@ TEST_F(ViewWindow, AMachineIsFollowed) {
   open({"shadow", "-c", config, "--program", program_, "--json", folder_.file("live.json")});
   ASSERT_NE(machine.wait_line("finished"), "");
   kerf_->settled();
+  // A start at line 7 from where it stands now: the answer lies over the part.
+  kerf_->click(100, 143, 3);
+  kerf_->click(140, 177);
+  EXPECT_TRUE(kerf_->shows(
+      [](const Picture& p) {
+        return is_dark(p, {320, 150}, {500, 200});
+      },
+      "S"));
   kerf_->key("Q");
   expect_end(0);
   EXPECT_GT(Json::parse(read_file(folder_.file("live.json")))["stock"]["removed_mm3"], 100);

@@ -97,10 +97,31 @@ void WindowedKerf::type(const std::string& text) const {
   EXPECT_TRUE(xdotool(fmt::format("type --delay 30 '{}'", text)));
 }
 
+void WindowedKerf::open_file(const std::string& path) const {
+  // It is there when it has been drawn: that takes processor time, a caret that blinks hardly any.
+  constexpr double kDrawing_s = 0.03;
+  const double before_s = process().cpu_s();
+  key("ctrl+o");
+  EXPECT_TRUE(wait_for([&] { return process().cpu_s() > before_s + kDrawing_s; }, kPatience));
+  EXPECT_TRUE(wait_for(
+      [&] {
+        const double drawing_s = process().cpu_s();
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        return process().cpu_s() < drawing_s + kDrawing_s;
+      },
+      kPatience));
+  type(path);
+  key("Return");
+}
+
 bool WindowedKerf::opens() {
   // The title comes with what there is to be drawn.
   is_titled("kerf - ");
   return shows([](const Picture& picture) { return picture.width_px > 0; });
+}
+
+void WindowedKerf::click(int x_px, int y_px, int button) const {
+  EXPECT_TRUE(xdotool(fmt::format("mousemove {} {} sleep 0.3 click {}", x_px, y_px, button)));
 }
 
 void WindowedKerf::key(const std::string& name) const {
@@ -119,9 +140,10 @@ Picture WindowedKerf::screenshot(const std::string& by_key) {
   return picture;
 }
 
-bool WindowedKerf::shows(const std::function<bool(const Picture&)>& wanted) {
+bool WindowedKerf::shows(const std::function<bool(const Picture&)>& wanted,
+                         const std::string& by_key) {
   bool seen = false;
-  wait_for([&] { return (seen = wanted(screenshot())) || has_ended(); }, kPatience);
+  wait_for([&] { return (seen = wanted(screenshot(by_key))) || has_ended(); }, kPatience);
   return seen;
 }
 

@@ -30,13 +30,18 @@ class WindowedKerf {
   bool is_titled(const std::string& begin) const;
   /// As xdotool names them: "space", "Q".
   void key(const std::string& name) const;
+  /// The mouse there, from the window's upper left corner: 1 is its left button, 3 the right one.
+  void click(int x_px, int y_px, int button = 1) const;
   /// One character after the other.
   void type(const std::string& text) const;
+  /// By the dialog that asks for a name: typed when it is there, else its letters would be keys of
+  /// the window.
+  void open_file(const std::string& path) const;
   /// The picture in the window, by its own key; or what another key of it saves: "S" is the whole
   /// window.
   Picture screenshot(const std::string& by_key = "s");
-  /// Takes pictures until one satisfies; false after a minute.
-  bool shows(const std::function<bool(const Picture&)>& wanted);
+  /// Takes pictures (screenshot()) until one satisfies; false after a minute.
+  bool shows(const std::function<bool(const Picture&)>& wanted, const std::string& by_key = "s");
   /// The picture when nothing in it moves any more.
   Picture settled();
   bool changes_from(const Picture& before, std::size_t pixels = 300);

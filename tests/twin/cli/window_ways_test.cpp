@@ -51,12 +51,6 @@ class WindowWays : public ::testing::Test {
     }
     return text;
   }
-  void open_file(const std::string& path) {
-    kerf_->key("ctrl+o");
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    kerf_->type(path);
-    kerf_->key("Return");
-  }
   void close(int exit_code) {
     kerf_->key("Q");
     const KerfResult result = kerf_->finish();
@@ -121,13 +115,13 @@ TEST_F(WindowWays, ALogIsOpenedLikeAProgramAndTheOtherWayRound) {
   const std::string other = folder_.write("other.csv", log_text(5));
   open({"view", program_, "--speed", "max"});
   const Picture program = kerf_->settled();
-  open_file(log);
+  kerf_->open_file(log);
   EXPECT_TRUE(kerf_->changes_from(program, 1000));
   const Picture replayed = kerf_->settled();
-  open_file(other);
+  kerf_->open_file(other);
   EXPECT_TRUE(kerf_->changes_from(replayed, 1000));
   kerf_->settled();
-  open_file(program_);
+  kerf_->open_file(program_);
   ASSERT_TRUE(kerf_->is_titled("kerf - part.ngc"));
   close(0);
   const std::string recent = read_file(kerf_->home() + "/kerf/view.conf");
@@ -140,7 +134,7 @@ TEST_F(WindowWays, ALogThatCannotBeReplayedLeavesTheProgram) {
   const std::string log = folder_.write("run.csv", "what is this\n");
   open({"view", program_});
   const Picture program = kerf_->settled();
-  open_file(log);
+  kerf_->open_file(log);
   std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_TRUE(shows_again(program));
   kerf_->key("End");
@@ -153,10 +147,10 @@ TEST_F(WindowWays, AReplayOpensAnotherLog) {
   const std::string other = folder_.write("other.csv", log_text(20));
   open({"replay", log, "--quiet"});
   const Picture first = kerf_->settled();
-  open_file(program_);  // refused: not in this window
+  kerf_->open_file(program_);  // refused: not in this window
   std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_TRUE(shows_again(first));
-  open_file(other);
+  kerf_->open_file(other);
   EXPECT_TRUE(kerf_->changes_from(first, 1000));
   close(0);
 }

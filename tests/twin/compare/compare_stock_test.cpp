@@ -395,6 +395,26 @@ TEST(CompareStock, OctreeAndMMapTellTheSame) {
   }
 }
 
+/// Around an island of 8.13 x 3.98 mm, from whose sides the tool's stay 3 mm.
+const std::vector<Vec3> kRing{{11, 10.03, 1},     {11, 10.03, -4}, {25.13, 10.03, -4},
+                              {25.13, 20.01, -4}, {11, 20.01, -4}, {11, 10.03, -4}};
+
+TEST(CompareStock, OurOwnMeshesAreGoodAsDesigns) {
+  // Cells of the design lie elsewhere than those of the part.
+  Cut design;
+  design.stock = zmap_of(0.13);
+  design.along("flat:6", kRing);
+  const DesignPart made = design_of(design.stock->mesh(0.001));
+  for (const bool is_wide : {false, true}) {
+    Cut cut = zmap_cut();
+    cut.along(is_wide ? "flat:6.04" : "flat:6", kRing);
+    const Comparison c = cut.with(made, 0.01);
+    EXPECT_EQ(c.gouges, is_wide ? 2u : 0u);  // the outer side, the island's
+    EXPECT_EQ(c.excesses, 0u);
+    EXPECT_NEAR(c.gouge.mm, is_wide ? 0.02 : 0, 0.003);
+  }
+}
+
 TEST(DesignFit, FindsBackWhatWasMovedAndTurned) {
   Cut cut = zmap_cut();
   cut.along("flat:6", {{11, 10.03, 1}, {11, 10.03, -4}, {25.13, 10.03, -4}, {25.13, 20, -4}});

@@ -228,6 +228,44 @@ TEST(LoadWatch, SpinningUpIsNoLoad) {
   EXPECT_EQ(shop.told(), 0U);
 }
 
+/// Facing at constant surface speed: the same power at speeds that were not seen in the air.
+std::vector<Span> face(double takes, double part_per_s) {
+  std::vector<Span> spans{{6, 0, 1, 4000, 1, true}};
+  double rpm = 4000;
+  for (int i = 0; i < 40; ++i, rpm *= std::exp(part_per_s * 0.5))
+    spans.push_back({0.5, 600, takes, rpm, 1, true});
+  return spans;
+}
+
+TEST(LoadWatch, ASpeedThatChangesSlowlyIsJudged) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    for (const double part_per_s : {0.02, 0.04, -0.04}) {
+      for (const double takes : {0.7, 1.0, 1.7}) {
+        Shop sound;
+        sound.run(face(takes, part_per_s), seed);
+        EXPECT_EQ(sound.told(), 0U) << takes << ", " << part_per_s;
+        EXPECT_GT(sound.watch.report()->tools.at(0).judged_s, 17);
+      }
+      Shop blunt;
+      blunt.run(face(3.5, part_per_s), seed);
+      EXPECT_EQ(blunt.told(), 1U) << part_per_s;
+    }
+    Shop broken;
+    broken.run(face(0, 0.04), seed);
+    EXPECT_EQ(broken.told(), 1U);
+  }
+}
+
+/// What gains speed quickly takes more than it cuts.
+TEST(LoadWatch, ASpeedThatChangesQuicklyIsNotJudged) {
+  Shop shop;
+  shop.run(face(3.5, 0.25));
+  EXPECT_EQ(shop.told(), 0U);
+  // Until a tenth faster: less than a second.
+  const LoadReport report = shop.watch.report().value();
+  EXPECT_TRUE(report.tools.empty() || report.tools[0].judged_s < 1);
+}
+
 /// A drive that filters for long, and slow polls.
 TEST(LoadWatch, LateNumbersAreNoDifference) {
   Machine machine;

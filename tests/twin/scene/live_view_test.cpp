@@ -213,6 +213,29 @@ TEST_F(LiveViewTest, OpeningIsAskedForWhereItCanBe) {
   EXPECT_EQ(asked, "other.csv");
 }
 
+TEST_F(LiveViewTest, AStartIsAskedAboutFromWhereTheMachineStandsNow) {
+  LiveViewOptions with = options();
+  LiveScene told;
+  std::atomic<int> line{0};
+  with.on_entry = [&](int asked, const LiveScene& now) {
+    told = now;
+    line = asked;
+  };
+  open(std::move(with));
+  frame(at({1, 2, 3}, 2));
+  ASSERT_TRUE(moment([](const Moment& m) { return m.time_s == 2; }));
+  commands_.push(EntryCommand{28});
+  ASSERT_TRUE(until([&] { return line == 28; }));
+  EXPECT_TRUE(told.stock);
+  ASSERT_TRUE(told.status);
+  EXPECT_EQ(told.status->place.tip_mm, Vec3(1, 2, 3));
+  const double age_s = told.status->age_s;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  commands_.push(EntryCommand{29});
+  ASSERT_TRUE(until([&] { return line == 29; }));
+  EXPECT_GE(told.status->age_s, age_s + 0.03) << "as old as it is when it is asked for";
+}
+
 TEST_F(LiveViewTest, TheWayGrowsAcrossChunks) {
   open(options());
   const std::size_t points = 2 * kPathChunkSegments + 100;

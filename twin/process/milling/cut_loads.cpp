@@ -101,6 +101,12 @@ void CutLoads::tell_unmeasured(double start_s, double seconds, LoadListener* lis
   listener->on_load(load);
 }
 
+void CutLoads::take_unmeasured(const Part& part, LoadListener* listener) {
+  feed_s_ += part.way.seconds;
+  close_air();
+  tell_unmeasured(part.start_s, part.way.seconds, listener);
+}
+
 void CutLoads::take_engaged(const Part& part) {
   tool_->cut_s += part.way.seconds;
   judge_way(part);

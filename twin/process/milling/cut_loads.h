@@ -42,6 +42,8 @@ class CutLoads {
   };
   /// `listener`: is told what it was like; null: nobody is.
   void take(const Part& part, LoadListener* listener = nullptr);
+  /// Of a part that was seen in the air and is not: how the tool is engaged there nobody knows.
+  void take_unmeasured(const Part& part, LoadListener* listener);
   /// Of a part that nobody has measured.
   void tell_unmeasured(double start_s, double seconds, LoadListener* listener) const;
   /// The program is over: what is wrong.

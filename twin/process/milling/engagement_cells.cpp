@@ -10,14 +10,30 @@
 namespace kerf {
 namespace {
 
-/// Of more cells across its radius every n-th is asked.
-constexpr double kManyCells = 20;
+/// Of more cells across its radius not all are asked, but so many as if each were larger.
+constexpr double kManyCells = 31;
 /// From where a cell is at it, a direction may be seen from so many sides of it.
 constexpr int kMostSpread = 12;
 /// Looking for where material ends, so many cells beyond the last in it.
 constexpr double kBeyond_cells = 1.5;
+/// So near to the rim, at least, is the cell before it.
+constexpr double kAtRim_cells = 2;
 /// From the deepest cell to the next one, so many places.
 constexpr int kDeepSteps = 4;
+
+/// atan2, right to 2e-5: a thousandth of the step between two directions.
+double direction_of(double y, double x) {
+  const double over = std::abs(y), out = std::abs(x);
+  const double part = std::min(over, out) / std::max({over, out, 1e-300}), square = part * part;
+  // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49.
+  double angle =
+      part *
+      (0.9998660 +
+       square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
+  if (over > out) angle = kPi / 2 - angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : angle;
+}
 
 }  // namespace
 
@@ -34,41 +50,37 @@ void EngagementScan::weigh_cells(double cell_mm) {
     const double outer = std::min(r + 0.5 * cell_mm, radius_);
     const double inner = std::max(0.0, r - 0.5 * cell_mm), width = outer - inner;
     const double rise = lift_of(outer) - lift_of(inner);
-    weights_[k] = {rise * cell_mm / r, width / std::hypot(width, rise)};
+    const double normal = width / std::hypot(width, rise);
+    weights_[k] = {rise * cell_mm / r, normal / kThinChip_mm,
+                   std::min(cell_mm / r, kPi) / CellFront::kStep};
   }
 }
 
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
-void EngagementScan::take_cell(const Station& station, const Vec2& arm, double depth,
+void EngagementScan::take_cell(const Station& station, const CellOver& over,
                                CellFront& front) const {
-  const double cell = front.each * cell_;
-  const double r = std::max(glm::length(arm), 0.25 * cell);
+  const Vec2& arm = over.arm;
+  const double r = std::max(over.radius_mm, 0.25 * front.across * cell_);
   const double ahead = glm::dot(arm, station.ahead);
   const double beside = station.ahead.x * arm.y - station.ahead.y * arm.x;
   const CellWeight& weight = weights_[static_cast<std::size_t>(r * lift_scale_)];
-  const double share = std::min(1.0, weight.normal * depth / kThinChip_mm) * weight.height_rad;
-  const double angle = std::atan2(beside, ahead);
-  // Near the middle a cell is seen in many directions.
-  const double spread = std::min(cell / r, kPi);
-  const int parts =
-      std::clamp(static_cast<int>(std::ceil(spread / CellFront::kStep)), 1, kMostSpread);
-  for (int n = 0; n < parts; ++n) {
-    const double at = (angle + spread * ((n + 0.5) / parts - 0.5) + kPi / 2) / CellFront::kStep;
-    const auto k = static_cast<int>(std::floor(at));
-    if (k < 0 || k >= CellFront::kSteps) continue;
-    const auto low = static_cast<std::size_t>(k);
-    front.share[low] += share / parts * (1 - (at - k));
-    front.share[low + 1] += share / parts * (at - k);
+  const double share = std::min(1.0, weight.thick_per_mm * over.depth_mm) * weight.height_rad;
+  const double step = (direction_of(beside, ahead) + kPi / 2) * (1 / CellFront::kStep);
+  if (weight.steps <= 1) {
+    front.add(step, share);
+  } else {
+    // Near the middle a cell is seen in many directions.
+    const int parts = std::min(static_cast<int>(weight.steps) + 1, kMostSpread);
+    for (int n = 0; n < parts; ++n)
+      front.add(step + weight.steps * ((n + 0.5) / parts - 0.5), share / parts);
   }
   if (ahead < 0) return;
-  FrontContact& contact = front.at[static_cast<std::size_t>(
-      std::clamp(std::lround((angle + kPi / 2) / CellFront::kStep), 0L, long{CellFront::kSteps}))];
+  FrontContact& contact = front.at[static_cast<std::size_t>(step + 0.5)];
   contact.inner_mm = contact.radius_mm <= 0 ? r : std::min(contact.inner_mm, r);
   contact.radius_mm = std::max(contact.radius_mm, r);
   // At the blank's edge heights are taken no further than they go.
-  const double above_tip =
-      std::min(depth + lift_of(r), heights_->bounds_mm().max.z - station.tip_z);
+  const double above_tip = std::min(over.depth_mm + over.lift_mm, front.most_above_tip_mm);
   contact.deep_mm = std::max(contact.deep_mm, above_tip - lift_of(std::abs(beside)));
   if (contact.deep_mm > front.deep_mm) front.deep_mm = contact.deep_mm, front.deepest = arm;
   if (r > front.farthest_mm) front.farthest_mm = r, front.farthest = arm;
@@ -86,39 +98,45 @@ void EngagementScan::take_cells(const Station& station, CellFront& front) const 
   const double to_part = kLifts / (radius_ * radius_);
   const auto row = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
   const int last_j = std::min(row(center.y + reach), heights_->ny() - 1);
-  const int each = front.each;
-  for (int j = std::max(0, row(center.y - reach)); j <= last_j; j += each) {
+  const int each = front.each, rows = front.rows;
+  for (int j = std::max(0, row(center.y - reach)); j <= last_j; j += rows) {
     const double y = (j + 0.5) * cell_y - center.y;
     const double half2 = reach * reach - y * y;
     if (half2 <= 0) continue;
     double from = -std::sqrt(half2), to = -from;
     // Ahead of its middle, or so near to its sides that a part of the cell is.
-    const double behind = -0.5 * front.each * cell_, limit = behind - ahead.y * y;
+    const double behind = -0.5 * front.across * cell_, limit = behind - ahead.y * y;
     if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
     if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
     if (std::abs(ahead.x) <= 1e-9 && limit > 0) continue;
     int first_i = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
-    first_i += (each - first_i % each + j / each % each) % each;
+    first_i += (each - first_i % each + j / rows % each) % each;
     const int last_i =
         std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
+    const HeightGrid::Row heights(*heights_, j);
     for (int i = first_i; i <= last_i; i += each) {
-      double height = static_cast<double>(heights_->height(i, j));
+      const auto height = static_cast<double>(heights.kept(i));
       const double x = (i + 0.5) * cell_x - center.x, r2 = x * x + y * y;
       // No higher than the profile somewhat farther in.
       if (height <= tip + low_lift_[static_cast<std::size_t>(r2 * to_part)]) continue;
-      const Vec2 arm(x, y), middle = station.center + arm;
-      const double r = std::sqrt(r2), surface = tip + lift_of(r) + kThinnestFilm_mm;
-      if (height <= surface || !is_on_way(station, middle)) continue;
-      if (slope > 0 && slope_of(r) * glm::dot(arm, ahead) <= slope * r) continue;
-      height = behind_itself(middle, behind_held(middle, height));
-      if (height > surface) take_cell(station, arm, height - surface, front);
+      CellOver over{{x, y}, std::sqrt(r2)};
+      over.lift_mm = lift_of(over.radius_mm);
+      const double surface = tip + over.lift_mm + kThinnestFilm_mm;
+      const Vec2 middle = station.center + over.arm;
+      if (height <= surface) continue;
+      if (station.is_near_end && !is_on_way(station, middle)) continue;
+      if (slope > 0 &&
+          slope_of(over.radius_mm) * glm::dot(over.arm, ahead) <= slope * over.radius_mm)
+        continue;
+      over.depth_mm = behind_itself(middle, behind_held(middle, height)) - surface;
+      if (over.depth_mm > 0) take_cell(station, over, front);
     }
   }
 }
 
 /// How far beyond a place in material it ends, in that direction.
 double EngagementScan::beyond(const Station& station, const Vec2& arm, const Vec2& out,
-                              int cells) const {
+                              double cells) const {
   const auto depth_at = [&](double mm) {
     const Vec2 at = arm + mm * out;
     if (glm::dot(at, at) >= radius_ * radius_) return -1.0;
@@ -126,7 +144,7 @@ double EngagementScan::beyond(const Station& station, const Vec2& arm, const Vec
   };
   double in = 0, free = kBeyond_cells * cells * cell_;
   if (depth_at(free) > 0) return free;
-  for (int n = 0; n < 2 + cells; ++n) {
+  for (int n = 0; n < 2 + static_cast<int>(cells); ++n) {
     const double middle = 0.5 * (in + free);
     (depth_at(middle) > 0 ? in : free) = middle;
   }
@@ -137,7 +155,7 @@ double EngagementScan::beyond(const Station& station, const Vec2& arm, const Vec
 /// nearer to the middle of its way than the cell is.
 double EngagementScan::deepest(const Station& station, const CellFront& front) const {
   const Vec2 left(-station.ahead.y, station.ahead.x);
-  const double beside = glm::dot(front.deepest, left), across = front.each * cell_;
+  const double beside = glm::dot(front.deepest, left), across = front.across * cell_;
   double deep = front.deep_mm;
   for (int n = 1; n <= kDeepSteps; ++n) {
     const double at = std::abs(beside) - across * n / kDeepSteps;
@@ -154,18 +172,23 @@ double EngagementScan::deepest(const Station& station, const CellFront& front) c
 /// them.
 EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticlockwise) {
   CellFront front;
-  front.each = std::max(1, static_cast<int>(radius_ / (kManyCells * cell_)));
-  weigh_cells(front.each * cell_);
+  const double finer = radius_ / (kManyCells * cell_);
+  const int cells = std::max(1, static_cast<int>(finer * finer));
+  front.rows = static_cast<int>(std::sqrt(cells));
+  front.each = cells / front.rows;
+  front.across = std::sqrt(front.rows * front.each);
+  front.most_above_tip_mm = heights_->bounds_mm().max.z - station.tip_z;
+  weigh_cells(front.across * cell_);
   take_cells(station, front);
   FrontRays rays(kRays, radius_, false);
   double left_mm = front.left_mm, right_mm = front.right_mm;
   if (front.farthest_mm > 0) {
     const Vec2 left(-station.ahead.y, station.ahead.x);
-    left_mm = std::min(left_mm + beyond(station, front.leftmost, left, front.each), radius_);
-    right_mm = std::max(right_mm - beyond(station, front.rightmost, -left, front.each), -radius_);
+    left_mm = std::min(left_mm + beyond(station, front.leftmost, left, front.across), radius_);
+    right_mm = std::max(right_mm - beyond(station, front.rightmost, -left, front.across), -radius_);
     const Vec2 out = front.farthest / front.farthest_mm;
     const double farthest =
-        std::min(front.farthest_mm + beyond(station, front.farthest, out, front.each), radius_);
+        std::min(front.farthest_mm + beyond(station, front.farthest, out, front.across), radius_);
     const double deep = deepest(station, front);
     for (FrontContact& contact : front.at) {
       if (contact.radius_mm >= front.farthest_mm) contact.radius_mm = farthest;
@@ -177,13 +200,24 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
     // Half of the outermost two's directions are beyond the sides.
     const bool is_side = k == 0 || k == CellFront::kSteps;
     contact.high_mm = front.share[k] / (is_side ? 0.5 * CellFront::kStep : CellFront::kStep);
-    if (contact.inner_mm <= flat_radius_ + 0.5 * front.each * cell_) contact.inner_mm = 0;
+    if (contact.inner_mm <= flat_radius_ + 0.5 * front.across * cell_) contact.inner_mm = 0;
     contact.edge_mm = profile_mm(contact.radius_mm) - profile_mm(contact.inner_mm);
   }
+  // What stands at the rim stands over the cells before it, too.
   const bool meets_rim = engaged_ >= radius_ * (1 - kSameRadius);
+  const double before_rim_mm = radius_ - kAtRim_cells * front.across * cell_;
+  const auto about = static_cast<std::size_t>(front.across * cell_ / (radius_ * CellFront::kStep));
+  std::array<bool, CellFront::kSteps + 2> may_have_wall{};
+  for (std::size_t k = 0; meets_rim && k <= CellFront::kSteps; ++k) {
+    if (front.at[k].radius_mm < before_rim_mm || front.at[k].radius_mm <= 0) continue;
+    const std::size_t first = k - std::min(k, about + 1);
+    const std::size_t last = std::min<std::size_t>(k + about + 1, CellFront::kSteps);
+    std::fill(may_have_wall.begin() + first, may_have_wall.begin() + last + 1, true);
+  }
   const auto wall_at = [&](double angle) {
     FrontContact wall;
-    wall.edge_mm = meets_rim ? rim_height(station, angle) : 0;
+    const auto k = static_cast<std::size_t>((angle + kPi / 2) * (1 / CellFront::kStep));
+    wall.edge_mm = may_have_wall[k] || may_have_wall[k + 1] ? rim_height(station, angle) : 0;
     if (wall.edge_mm <= 0) return wall;
     const double beside = radius_ * (1 - kSameRadius) * std::abs(std::sin(angle));
     wall.deep_mm = wall.edge_mm + lift_[kLifts] - lift_of(beside);

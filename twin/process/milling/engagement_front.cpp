@@ -215,19 +215,6 @@ double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
   return behind_itself(point, behind_held(point, height));
 }
 
-/// How high over its tip the cutter's surface is.
-double EngagementScan::lift_of(double radius) const {
-  const double scaled = std::min(radius * lift_scale_, double{kLifts});
-  const auto k = static_cast<std::size_t>(scaled);
-  return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
-}
-
-/// How much it rises there for each mm of the radius.
-double EngagementScan::slope_of(double radius) const {
-  const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
-  return (lift_[k + 1] - lift_[k]) * lift_scale_;
-}
-
 double EngagementScan::lift_at(const Vec2& point, const Station& station) const {
   return lift_of(glm::length(point - station.center));
 }

@@ -131,32 +131,28 @@ double EngagementScan::front_at_start(const Lane& lane) const {
 /// How high the material is there when the move that is held back is cut, too.
 double EngagementScan::behind_held(const Vec2& point, double height) const {
   const Held& held = held_;
-  if (held.length <= 0 || height <= std::min(held.z, held.z + held.rise)) return height;
+  if (held.length <= 0 || height <= held.z + std::min(0.0, held.slope * held.length)) return height;
   const Vec2 arm = point - held.start;
   const double beside = held.direction.x * arm.y - held.direction.y * arm.x;
   const double along = glm::dot(arm, held.direction);
+  const double nearest = std::clamp(along, 0.0, held.length);
   const double half2 = radius_ * radius_ - beside * beside;
-  if (half2 <= 0) return height;
-  const double half = std::sqrt(half2);
-  double low = std::max(0.0, along - half), high = std::min(held.length, along + half);
-  if (low >= high) return height;
+  if ((along - nearest) * (along - nearest) >= half2) return height;
   const auto surface_at = [&](double at) {
     const double distance = std::sqrt((along - at) * (along - at) + beside * beside);
     const double scaled = std::min(distance * lift_scale_, double{kLifts});
     const auto k = static_cast<std::size_t>(scaled);
     const double step = lift_[k + 1] - lift_[k];
     const double part = step * lift_scale_ > kWallSlope ? 0 : scaled - static_cast<double>(k);
-    return held.z + held.rise * at / held.length + lift_[k] + part * step;
+    return held.z + held.slope * at + lift_[k] + part * step;
   };
-  if (held.rise == 0) return std::min(height, surface_at(std::clamp(along, low, high)));
-  if (is_flat())
-    return std::min(height, held.z + held.rise * (held.rise < 0 ? high : low) / held.length);
+  if (held.slope == 0) return std::min(height, surface_at(nearest));
+  const double half = std::sqrt(half2);
+  const double low = std::max(0.0, along - half), high = std::min(held.length, along + half);
+  if (is_flat()) return std::min(height, held.z + held.slope * (held.slope < 0 ? high : low));
   // A ball is lowest where its sphere, cut along the way, leans as the way does.
-  if (is_ball_) {
-    const double slope = held.rise / held.length;
-    const double at = along - slope * half / std::sqrt(1 + slope * slope);
-    return std::min(height, surface_at(std::clamp(at, low, high)));
-  }
+  if (is_ball_)
+    return std::min(height, surface_at(std::clamp(along - held.lean * half, low, high)));
   const double least = golden_section(surface_at, low, high, kHeldSteps).least;
   return std::min(height, least - kHeldSlack_mm);
 }
@@ -368,8 +364,11 @@ void EngagementScan::set_held(const CutMove* held) {
   held_ = {};
   if (held == nullptr) return;
   const Vec3 way = held->to_mm - held->from_mm;
-  held_ = {Vec2(held->from_mm), {1, 0}, glm::length(Vec2(way)), held->from_mm.z, way.z};
-  if (held_.length > 0) held_.direction = Vec2(way) / held_.length;
+  const double length = glm::length(Vec2(way));
+  if (length <= 0) return;
+  const double slope = way.z / length;
+  held_ = {Vec2(held->from_mm),         Vec2(way) / length, length, held->from_mm.z, slope,
+           slope / std::hypot(1, slope)};
 }
 
 EngagementScan::Cost EngagementScan::run_lanes(const HeightGrid& heights, const Cutter& cutter,

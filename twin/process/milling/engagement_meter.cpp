@@ -28,6 +28,9 @@ constexpr double kBrief = 0.15, kCoarseBrief = 0.4;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
+/// Where air that was seen is asked whether it still is: parts of the radius, and directions.
+constexpr double kProbedRadii[] = {0.2, 0.5, 0.75, 0.95};
+constexpr int kProbedRays = 8;
 /// Looks along one move at most.
 constexpr double kMostNodes = 4096;
 
@@ -143,10 +146,8 @@ void EngagementMeter::add(double from, double to, const EngagementLook& look) {
 
 void EngagementMeter::refine(const Node& from, const Node& to, int halvings) {
   const double middle = 0.5 * (from.at + to.at);
-  const double closest =
-      std::max(kClosestOfDiameter * diameter_mm_, kClosestCells * stock_.cell_mm());
   if (is_same(from.look, to.look) || halvings == 0 ||
-      (to.at - from.at) * length_mm_ < 2 * closest) {
+      (to.at - from.at) * length_mm_ < 2 * closest_mm()) {
     add(from.at, middle, from.look);
     add(middle, to.at, to.look);
     return;
@@ -171,6 +172,32 @@ bool EngagementMeter::counts_still(const CutMove& move) {
   return way_mm <= spacing_mm_ || saved_cells_ < 0;
 }
 
+/// At one of a few places ahead of the tool, where the move ends. Moves before it may not have been
+/// given to the model yet: of what they have removed it is no more than asked too often.
+bool EngagementMeter::meets_material(const CutMove& move) const {
+  const auto* const present = dynamic_cast<const PresentHeights*>(&stock_.bare());
+  const std::optional<HeightGrid> heights =
+      present != nullptr ? present->present_heights() : std::nullopt;
+  if (!heights) return false;
+  const Box& box = heights->bounds_mm();
+  const Vec2 ahead(way_of_short(move)), left(-ahead.y, ahead.x);
+  const double tip = std::max(std::min(move.from_mm.z, move.to_mm.z), box.min.z) + kSameDepth_mm;
+  for (const double part : kProbedRadii) {
+    const double radius = part * cutter_->radius_mm();
+    const double surface = tip + cutter_->height_mm(radius);
+    for (int n = 0; n <= kProbedRays; ++n) {
+      const double angle = kPi * (static_cast<double>(n) / kProbedRays - 0.5);
+      const Vec2 at = Vec2(move.to_mm) - Vec2(box.min) +
+                      radius * (std::cos(angle) * ahead + std::sin(angle) * left);
+      const auto i = static_cast<int>(std::floor(at.x / heights->cell_x_mm()));
+      const auto j = static_cast<int>(std::floor(at.y / heights->cell_y_mm()));
+      if (heights->contains(i, j) && static_cast<double>(heights->height(i, j)) > surface)
+        return true;
+    }
+  }
+  return false;
+}
+
 /// What stands where the move goes.
 bool EngagementMeter::find_material(std::optional<HeightGrid>& heights) {
   heights_ = nullptr, points_ = nullptr;
@@ -184,6 +211,24 @@ bool EngagementMeter::find_material(std::optional<HeightGrid>& heights) {
   }
   points_ = dynamic_cast<const SolidPoints*>(&model);
   return points_ != nullptr && SolidFront::takes(*cutter_, *move_);
+}
+
+/// By looks at so many places after its begin, and where these differ between them.
+void EngagementMeter::take_along(int places) {
+  const double last_at = 1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
+  Node before{0, look(0)};
+  for (int k = 1; k <= places; ++k) {
+    Node node{k == places ? 1 : static_cast<double>(k) / places, {}};
+    node.look = look(std::min(node.at, last_at));
+    refine(before, node, kMostHalvings);
+    before = node;
+  }
+  last_ = before.look;
+  since_mm_ = -1;
+}
+
+double EngagementMeter::closest_mm() const {
+  return std::max(kClosestOfDiameter * diameter_mm_, kClosestCells * stock_.cell_mm());
 }
 
 const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
@@ -207,7 +252,8 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   const bool steep = is_steep(move);
   const double farthest =
       std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  if (length_mm_ < farthest && !steep && counts_still(move)) {
+  if (length_mm_ < farthest && !steep && counts_still(move) &&
+      (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
@@ -241,21 +287,13 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     spacing_mm_ = std::max(spacing_mm_, farthest);
     since_mm_ = 0.5 * length_mm_;
     last_ahead_ = way_of_short(move);
-    add(0, 1, last_);
+    // What is in the air in the middle may end, or have begun, in material.
+    if (last_.is_engaged() || length_mm_ < closest_mm())
+      add(0, 1, last_);
+    else
+      take_along(2);
   } else {
-    const double nodes = std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes);
-    const double last_at =
-        1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
-    Node before{0, look(0)};
-    for (int k = 1; k <= static_cast<int>(nodes); ++k) {
-      const bool is_last = k == static_cast<int>(nodes);
-      Node node{is_last ? 1 : k / nodes, {}};
-      node.look = look(std::min(node.at, last_at));
-      refine(before, node, kMostHalvings);
-      before = node;
-    }
-    last_ = before.look;
-    since_mm_ = -1;
+    take_along(static_cast<int>(std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes)));
   }
   flush();
   heights_ = nullptr, points_ = nullptr;

@@ -82,10 +82,13 @@ class EngagementMeter {
   bool is_same(const EngagementLook& a, const EngagementLook& b) const;
   void add(double from, double to, const EngagementLook& look);
   void refine(const Node& from, const Node& to, int halvings);
+  void take_along(int places);
+  double closest_mm() const;
   void flush();
   EngagementLook look(double at);
   bool find_material(std::optional<HeightGrid>& heights);
   bool counts_still(const CutMove& move);
+  bool meets_material(const CutMove& move) const;
 
   const StockModel& stock_;
   EngagementLog& log_;

@@ -2,6 +2,7 @@
 // heights that it meets, cell by cell, without cutting.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -233,9 +234,10 @@ class EngagementScan {
   double profile_mm(double radius) const;
   /// What its cells say of a place, in directions from one side to the other.
   struct CellFront {
-    static constexpr int kSteps = 36;
+    static constexpr int kSteps = 72;
     static constexpr double kStep = kPi / kSteps;
-    int each = 1;  ///< of so many cells in a row, and rows, one is asked
+    int each = 1, rows = 1;  ///< of so many cells in a row, and of so many rows, one is asked
+    double across = 1;       ///< so many cells wide is what it stands for
     std::array<FrontContact, kSteps + 1> at{};
     std::array<double, kSteps + 1> share{};  ///< of the height, times the angle
     /// Seen from the cutter's middle.
@@ -243,16 +245,41 @@ class EngagementScan {
            right_mm = std::numeric_limits<double>::infinity();
     double deep_mm = 0;
     Vec2 farthest{0}, leftmost{0}, rightmost{0}, deepest{0};
+    double most_above_tip_mm = 0;  ///< heights go no further
+
+    /// What lies between two steps is shared by them.
+    void add(double step, double height_rad) {
+      if (step < 0 || step >= kSteps) return;
+      const auto low = static_cast<std::size_t>(step);
+      const double beyond = step - static_cast<double>(low);
+      share[low] += height_rad * (1 - beyond);
+      share[low + 1] += height_rad * beyond;
+    }
+  };
+  /// A cell over the cutter's surface.
+  struct CellOver {
+    Vec2 arm{0};                        ///< from the cutter's middle
+    double radius_mm = 0, lift_mm = 0;  ///< of that place, and the cutter's surface over its tip
+    double depth_mm = 0;
   };
   bool is_fine() const;
-  void take_cell(const Station& station, const Vec2& arm, double depth, CellFront& front) const;
+  void take_cell(const Station& station, const CellOver& over, CellFront& front) const;
   void take_cells(const Station& station, CellFront& front) const;
   void weigh_cells(double cell_mm);
-  double beyond(const Station& station, const Vec2& arm, const Vec2& out, int cells) const;
+  double beyond(const Station& station, const Vec2& arm, const Vec2& out, double cells) const;
   double deepest(const Station& station, const CellFront& front) const;
   EngagementLook look_by_cells(const Station& station, bool anticlockwise);
-  double lift_of(double radius) const;
-  double slope_of(double radius) const;
+  /// How high over its tip the cutter's surface is.
+  double lift_of(double radius) const {
+    const double scaled = std::min(radius * lift_scale_, double{kLifts});
+    const auto k = static_cast<std::size_t>(scaled);
+    return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
+  }
+  /// How much it rises there for each mm of the radius.
+  double slope_of(double radius) const {
+    const auto k = static_cast<std::size_t>(std::min(radius * lift_scale_, double{kLifts - 1}));
+    return (lift_[k + 1] - lift_[k]) * lift_scale_;
+  }
   EngagementLook plunge_at(const Station& station) const;
   bool cuts_centre(const Station& station) const;
 
@@ -276,9 +303,10 @@ class EngagementScan {
   static constexpr int kLifts = 1024;
   std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
   double lift_scale_ = 0;
-  /// What a cell in material adds: height times angle; and how much thinner it is than it is high.
+  /// What a cell in material adds: height times angle; for each mm of its depth, so much of that
+  /// counts as is no thin chip; and over how many steps of directions it is seen.
   struct CellWeight {
-    double height_rad = 0, normal = 1;
+    double height_rad = 0, thick_per_mm = 1, steps = 1;
   };
   std::vector<CellWeight> weights_;
   double weighed_mm_ = 0;         ///< for cells of that size
@@ -297,7 +325,8 @@ class EngagementScan {
   /// The move that is held back; length 0: none.
   struct Held {
     Vec2 start{0}, direction{1, 0};
-    double length = 0, z = 0, rise = 0;
+    double length = 0, z = 0;
+    double slope = 0, lean = 0;  ///< of its way: the tangent, and the sine
   } held_;
 };
 

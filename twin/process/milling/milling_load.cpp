@@ -15,9 +15,6 @@ namespace {
 /// Short moves are looked at on their own where they are at least so much of a window long and
 /// there is enough to spend.
 constexpr double kLeastOfWindow = 0.5;
-/// A longer way in material removes some cells.
-constexpr double kLeastRemoving_cells = 4;
-constexpr std::size_t kPartsTaken = 4096;
 
 /// Round a corner the planner goes as fast as the faster of its two moves.
 double reached_mm_per_min(const TimedStep& step) {
@@ -62,7 +59,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   part_rpm_ = m.spindle == SpindleState::kStopped ? 0 : m.spindle_rpm;
   // A machine that is watched has the feed that it has.
   part_mm_per_min_ = site_.watched ? step.programmed_mm_per_min : reached_mm_per_min(step);
-  const std::size_t told_before = load_parts_told_;
+  const std::size_t heard_before = engaged_parts_.heard();
   const bool near = comes_near(m);
   const bool one_piece = divided_.size() == 1 && LoadMeter::is_one_piece(divided_[0]);
   if (!one_piece && !stock_.takes_tilted_tools()) {
@@ -75,7 +72,6 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   for (const CutMove& move : divided_) ways += way_length_mm(move);
   if (ways <= 0) return;
   EngagementSums sums;
-  bool measured = true;
   double start_s = step.start_s;
   for (const CutMove& move : divided_) {
     const double duration_s = step.duration_s * way_length_mm(move) / ways;
@@ -84,7 +80,6 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
                            m.source, start_s, duration_s});
     start_s += duration_s;
     if (taken.pass != EngagementLog::kNoPass) flight.pass = taken.pass;
-    measured = measured && taken.measured;
     sums.add(taken.sums);
     engagement_->note(move);
   }
@@ -92,37 +87,34 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
   // Those before may have been taken meanwhile.
-  flight.parts = load_parts_told_ - told_before;
+  flight.parts = engaged_parts_.heard() - heard_before;
+  flight.way_mm = step.length_mm;
   flight.bounds_parts = divided_.size() == 1;
-  if (site_.recorder && measured) site_.recorder->on_engaged(site_.motion, sums);
 }
 
-/// What a move has removed is the least doubtful of what is known of it: ahead of a tool there may
-/// be a wall that it does not reach.
-void MillingStage::take_loads(const InFlight& move, const CutReport& report) {
-  for (std::size_t n = 0; n < move.parts; ++n) {
-    CutLoads::Part& part = load_parts_[load_parts_taken_++];
-    if (move.bounds_parts && report.depth_mm > 0)
-      part.look.deep_mm = std::min(part.look.deep_mm, report.depth_mm);
-    if (move.bounds_parts && report.removed_mm3 <= 0 && report.depth_mm <= 0 &&
-        part.way.length_mm > kLeastRemoving_cells * stock_.cell_mm())
-      part.look = {};
-    loads_.take(part, site_.loads);
-  }
-  // Some moves are always on their way: those that have arrived are let go of in numbers.
-  if (load_parts_taken_ < std::min(kPartsTaken, load_parts_.size())) return;
-  load_parts_.erase(load_parts_.begin(),
-                    load_parts_.begin() + static_cast<std::ptrdiff_t>(load_parts_taken_));
-  load_parts_taken_ = 0;
+void MillingStage::judge_parts(const InFlight& move, const CutReport& report) {
+  if (!engagement_) return;
+  if (!move.feed) engaged_parts_.end_way();
+  EngagedParts::Done done;
+  done.parts = move.parts;
+  done.is_whole = move.bounds_parts;
+  done.may_wait = !site_.watched;
+  done.pass = move.pass;
+  done.motion = move.motion;
+  done.removed_mm3 = report.removed_mm3, done.depth_mm = report.depth_mm;
+  done.front_mm = engaged_parts_.is_waiting() ? front_mm_of(move.way_mm, report) : 0;
+  done.reach_mm = cutter() != nullptr ? cutter()->radius_mm() : 0;
+  done.cell_mm = stock_.cell_mm();
+  engaged_parts_.judge(done);
 }
 
 /// How far before its middle the cutter meets material of that depth, and of the width that this
 /// removal has. Octrees tell what the front takes with the move that takes it.
-double MillingStage::front_mm_of(const FeedPart& part, const CutReport& report) const {
+double MillingStage::front_mm_of(double way_mm, const CutReport& report) const {
   if (stock_.takes_tilted_tools() || cutter() == nullptr || report.depth_mm <= 0) return 0;
   const double half_mm = half_width_mm(*cutter(), report.depth_mm);
-  const double way_mm = std::max(part.way_mm, stock_.cell_mm());
-  const double width_mm = report.removed_mm3 / (report.depth_mm * way_mm);
+  const double least_mm = std::max(way_mm, stock_.cell_mm());
+  const double width_mm = report.removed_mm3 / (report.depth_mm * least_mm);
   const double beside_mm = std::max(0.0, half_mm - width_mm);
   return std::sqrt(std::max(0.0, half_mm * half_mm - beside_mm * beside_mm));
 }
@@ -143,7 +135,7 @@ void MillingStage::count_feed(ToolUse& use, const InFlight& move, const CutRepor
   if (reach.part.known) {
     const bool begins = report.removed_mm3 > 0 && use.gap_mm > reach.part.near_mm &&
                         use.gap_mm < std::numeric_limits<double>::infinity();
-    const double front_mm = begins ? front_mm_of(reach.part, report) : 0;
+    const double front_mm = begins ? front_mm_of(reach.part.way_mm, report) : 0;
     add_short_move(use, reach.part, report.removed_mm3, bound, front_mm);
   } else {
     use.gap_mm = std::numeric_limits<double>::infinity();

@@ -85,6 +85,7 @@ void MillingStage::begin_reporting() {
   taps_.clear();
   last_down_.reset();
   loads_.forget();
+  engaged_parts_.forget();
   deepest_.clear();
   mounted_ = nullptr;
   drawn_told_ = false;
@@ -103,6 +104,7 @@ void MillingStage::finish(bool whole) {
     if (!taps_.contains(move.motion)) report_reversed(move, tool);
   }
   // Feeds between two samples tremble: of a watched machine only means count (LoadWatch).
+  engaged_parts_.end_way();
   if (!site_.watched) loads_.finish();
   for (ToolUse& use : uses_) {
     if (!site_.watched) use.loads = loads_.loads_of(use.number, use.shape);
@@ -115,6 +117,7 @@ void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const 
   watch_program(m, step);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     complete();  // with the cutter that made these moves
+    engaged_parts_.end_way();
     checks_.end_spindle_event();
     spindle_tool_ = m.tool;
     mounted_ = nullptr;
@@ -176,12 +179,12 @@ bool MillingStage::mount_for(const Motion& m) {
   announce(*mounted_, m);
   mount_shank(m);
   if (mounted_->cutter) mount_parts(m);
+  engaged_parts_.set(site_.engagement, site_.loads, site_.recorder);
   if (site_.engagement && !engagement_) {
     engagement_.emplace(stock_, *site_.engagement, [this] { hand_over(); });
     engagement_->hear_by([this](const EngagementLog::Part& part) {
-      ++load_parts_told_;
-      load_parts_.push_back({part.look, part.way, part.source, part.start_s, part.move->from_mm,
-                             part_rpm_, part_mm_per_min_});
+      engaged_parts_.hear({part.look, part.way, part.source, part.start_s, part.move->from_mm,
+                           part_rpm_, part_mm_per_min_});
     });
   }
   if (engagement_ && mounted_->cutter) engagement_->mount(mounted_->number, cutting());
@@ -441,7 +444,7 @@ void MillingStage::collect_reports() {
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     const CutReport& report = reports_[i];
     const InFlight& move = in_flight_[i];
-    take_loads(move, report);
+    judge_parts(move, report);
     ToolUse& use = uses_[move.use];
     if (site_.labels) site_.labels->note(report.id, report.removed_mm3, move.duration_s);
     site_.note_cut(move.motion, report.removed_mm3, report.depth_mm);

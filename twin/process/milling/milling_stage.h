@@ -20,6 +20,7 @@
 #include "twin/process/fixture_checks.h"
 #include "twin/process/milling/checks.h"
 #include "twin/process/milling/cut_loads.h"
+#include "twin/process/milling/engaged_parts.h"
 #include "twin/process/milling/engagement_meter.h"
 #include "twin/process/milling/film_events.h"
 #include "twin/process/milling/length_check.h"
@@ -87,7 +88,8 @@ class MillingStage final : public Process {
     bool feed = false;
     bool measured = false;  ///< its cutting time and rate are in the ToolUse already
     bool spindle_off = false;
-    std::size_t parts = 0;  ///< of load_parts_, those of its motion, with the first of its moves
+    double way_mm = 0;      ///< of its motion
+    std::size_t parts = 0;  ///< of engaged_parts_, those of its motion, with the first of its moves
     bool bounds_parts = false;  ///< it is the only one
     bool reversed = false;      ///< the spindle runs anticlockwise
     bool straight_down = false;
@@ -126,7 +128,7 @@ class MillingStage final : public Process {
   void note_contact(const CheckedMove& move);
   void note_depth(const Motion& motion, const TimedStep& step);
   void report_coarse_cells();
-  void take_loads(const InFlight& move, const CutReport& report);
+  void judge_parts(const InFlight& move, const CutReport& report);
   void report_reversed(const InFlight& move, int tool);
   /// Of a way straight down while the spindle runs anticlockwise, that goes up again while it runs
   /// clockwise: a left-hand tap.
@@ -136,7 +138,7 @@ class MillingStage final : public Process {
   void measure(const Motion& motion, const TimedStep& step, InFlight& flight);
   void engage(const Motion& motion, const TimedStep& step, InFlight& flight);
   void collect_reports();
-  double front_mm_of(const FeedPart& part, const CutReport& report) const;
+  double front_mm_of(double way_mm, const CutReport& report) const;
   void count_feed(ToolUse& use, const InFlight& move, const CutReport& report) const;
   void note_teeth(const Motion& motion, const TimedStep& step, InFlight& flight) const;
   void count_chip(ChipLoad& chip, const InFlight& move, const CutReport& report) const;
@@ -162,10 +164,7 @@ class MillingStage final : public Process {
   LoadMeter load_meter_;
   std::optional<EngagementMeter> engagement_;  ///< while anybody wants to know
   CutLoads loads_;
-  /// Of moves whose reports have not come.
-  std::vector<CutLoads::Part> load_parts_;
-  std::size_t load_parts_taken_ = 0;
-  std::size_t load_parts_told_ = 0;            ///< in all
+  EngagedParts engaged_parts_{loads_};
   double part_rpm_ = 0, part_mm_per_min_ = 0;  ///< of the present motion
   std::set<int> reversed_told_;  ///< tools that have cut with a spindle that runs anticlockwise
   /// Moves straight down that did, and their tools; motions that are taps; the last such motion,

@@ -54,6 +54,7 @@ double PastWays::Tool::lift_mm(double distance_mm) const {
 
 void PastWays::clear() {
   ways_.clear();
+  mounts_.clear();
   arcs_.clear();
   tools_.clear();
   last_.clear();
@@ -64,7 +65,7 @@ void PastWays::mount(const Cutter& cutter, int number) {
   const auto found = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& tool) {
     return tool.spec == cutter.spec() && tool.number == number;
   });
-  tool_ = static_cast<std::uint32_t>(found - tools_.begin());
+  tool_ = static_cast<std::size_t>(found - tools_.begin());
   if (found != tools_.end()) return;
   Tool tool;
   tool.spec = cutter.spec();
@@ -96,7 +97,6 @@ void PastWays::add(const CutMove& move) {
     way.from[i] = static_cast<float>(move.from_mm[i]);
     way.to[i] = static_cast<float>(move.to_mm[i]);
   }
-  way.tool = tool_;
   if (move.arc) {
     const CutArc& arc = *move.arc;
     const Vec2 center(arc.center_mm), from = Vec2(move.from_mm) - center;
@@ -111,7 +111,15 @@ void PastWays::add(const CutMove& move) {
   if (last_.size() <= number) last_.resize(number + 1, kNone);
   way.before = last_[number];
   last_[number] = static_cast<std::uint32_t>(ways_.size());
+  if (mounts_.empty() || mounts_.back().tool != tool_) mounts_.push_back({ways_.size(), tool_});
   ways_.push_back(way);
+}
+
+std::size_t PastWays::mount_before(std::size_t way) const {
+  const auto after = std::upper_bound(
+      mounts_.begin(), mounts_.end(), way,
+      [](std::size_t asked, const Mount& mount) { return asked < mount.first_way; });
+  return static_cast<std::size_t>(after - mounts_.begin()) - 1;
 }
 
 bool PastWays::covers(std::uint32_t number, const Vec2& point, double z_mm,
@@ -119,20 +127,21 @@ bool PastWays::covers(std::uint32_t number, const Vec2& point, double z_mm,
   if (number >= last_.size()) return false;
   int asked = 0;
   for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
-    if (covers(ways_[n], point, z_mm, margin_mm)) return true;
+    if (covers(ways_[n], tools_[tool_of(n)], point, z_mm, margin_mm)) return true;
     ++asked;
   }
   return false;
 }
 
-bool PastWays::covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const {
+bool PastWays::covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+                      double margin_mm) const {
   if (static_cast<double>(std::min(way.from[2], way.to[2])) > z_mm + margin_mm) return false;
-  return way.arc == kNone ? line_covers(way, point, z_mm, margin_mm)
-                          : arc_covers(way, point, z_mm, margin_mm);
+  return way.arc == kNone ? line_covers(way, tool, point, z_mm, margin_mm)
+                          : arc_covers(way, tool, point, z_mm, margin_mm);
 }
 
-bool PastWays::line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const {
-  const Tool& tool = tools_[way.tool];
+bool PastWays::line_covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+                           double margin_mm) const {
   const Vec2 from(static_cast<double>(way.from[0]), static_cast<double>(way.from[1]));
   const Vec2 along = Vec2(static_cast<double>(way.to[0]), static_cast<double>(way.to[1])) - from;
   const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
@@ -164,15 +173,16 @@ double PastWays::height_mm(std::uint32_t number, const Vec2& point, double margi
   int asked = 0;
   for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
     const Way& way = ways_[n];
-    low = std::min(low, way.arc == kNone ? line_height(way, point, margin_mm)
-                                         : arc_height(way, point, margin_mm));
+    const Tool& tool = tools_[tool_of(n)];
+    low = std::min(low, way.arc == kNone ? line_height(way, tool, point, margin_mm)
+                                         : arc_height(way, tool, point, margin_mm));
     ++asked;
   }
   return low;
 }
 
-double PastWays::line_height(const Way& way, const Vec2& point, double margin_mm) const {
-  const Tool& tool = tools_[way.tool];
+double PastWays::line_height(const Way& way, const Tool& tool, const Vec2& point,
+                             double margin_mm) const {
   const Vec2 from(static_cast<double>(way.from[0]), static_cast<double>(way.from[1]));
   const Vec2 along = Vec2(static_cast<double>(way.to[0]), static_cast<double>(way.to[1])) - from;
   const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
@@ -201,8 +211,8 @@ double PastWays::line_height(const Way& way, const Vec2& point, double margin_mm
   return golden_section(surface, first, last, kHeightSteps).least;
 }
 
-double PastWays::arc_height(const Way& way, const Vec2& point, double margin_mm) const {
-  const Tool& tool = tools_[way.tool];
+double PastWays::arc_height(const Way& way, const Tool& tool, const Vec2& point,
+                            double margin_mm) const {
   const Arc& arc = arcs_[way.arc];
   const Vec2 arm = point - arc.center;
   const double out = glm::length(arm), sweep = std::abs(arc.sweep),
@@ -233,8 +243,8 @@ double PastWays::arc_height(const Way& way, const Vec2& point, double margin_mm)
   return low;
 }
 
-bool PastWays::arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const {
-  const Tool& tool = tools_[way.tool];
+bool PastWays::arc_covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+                          double margin_mm) const {
   const Arc& arc = arcs_[way.arc];
   const Vec2 arm = point - arc.center;
   const double out = glm::length(arm), sweep = std::abs(arc.sweep);

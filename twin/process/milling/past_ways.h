@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/growing_list.h"
 #include "stock/stock_model.h"
 
 namespace kerf {
@@ -17,7 +18,7 @@ bool is_ball_end(const Cutter& cutter);
 
 /// Moves of upright tools by their numbers, which a workpiece keeps for each of its cells
 /// (StockModel::keep_cut_ids). Several moves may have one number: of these the last kMostOfOne are
-/// asked. 48 bytes a move, 80 an arc. One thread.
+/// asked. 36 bytes a move, 76 an arc. One thread.
 class PastWays {
  public:
   static constexpr int kMostOfOne = 64;
@@ -39,7 +40,7 @@ class PastWays {
   /// Of the last move of that number; -1: it is not known, or its tool is flat.
   int round_tool_of(std::uint32_t number) const {
     if (!knows(number)) return -1;
-    const std::uint32_t tool = ways_[last_[number]].tool;
+    const std::size_t tool = tool_of(last_[number]);
     return tools_[tool].is_flat ? -1 : static_cast<int>(tool);
   }
   bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
@@ -73,18 +74,31 @@ class PastWays {
     float from[3], to[3];
     std::uint32_t before = kNone;  ///< of the same number
     std::uint32_t arc = kNone;
-    std::uint32_t tool = 0;
   };
-  bool covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
-  bool line_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
-  bool arc_covers(const Way& way, const Vec2& point, double z_mm, double margin_mm) const;
-  double line_height(const Way& way, const Vec2& point, double margin_mm) const;
-  double arc_height(const Way& way, const Vec2& point, double margin_mm) const;
+  /// From a way on, this tool was in the spindle.
+  struct Mount {
+    std::size_t first_way = 0, tool = 0;
+  };
+  std::size_t tool_of(std::size_t way) const {
+    std::size_t k = mounts_.size() - 1;
+    if (way < mounts_[k].first_way) k = mount_before(way);
+    return mounts_[k].tool;
+  }
+  std::size_t mount_before(std::size_t way) const;
+  bool covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+              double margin_mm) const;
+  bool line_covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+                   double margin_mm) const;
+  bool arc_covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
+                  double margin_mm) const;
+  double line_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
+  double arc_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
 
-  std::vector<Way> ways_;
+  GrowingList<Way> ways_;
+  std::vector<Mount> mounts_;
   std::vector<Arc> arcs_;
   std::vector<Tool> tools_;
-  std::uint32_t tool_ = 0;
+  std::size_t tool_ = 0;
   std::vector<std::uint32_t> last_;  ///< by number
 };
 

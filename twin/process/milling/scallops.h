@@ -32,7 +32,7 @@ struct ScallopsOfTool {
 /// wide, are not seen; nor is what a flat tool leaves. O(cells of these lines); one thread.
 class ScallopScan {
  public:
-  static constexpr int kLines = 200, kLeastCells = 4;
+  static constexpr int kLines = 100, kLeastCells = 4;
 
   ScallopScan(const HeightGrid& heights, const PresentHeights& owners, const PastWays& ways)
       : heights_(heights), owners_(owners), ways_(ways) {}

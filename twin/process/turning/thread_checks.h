@@ -31,6 +31,8 @@ class ThreadChecks {
   ThreadChecks(const TurningStock& stock, FindingLog& log) : stock_(stock), log_(log) {}
 
   void mount(const Cutter& cutter);
+  /// The tool has the profile of a thread.
+  bool is_threading_tool() const { return form_.has_value(); }
   /// A motion with a lead, before it is cut; also one that stays beside the workpiece: where a pass
   /// begins says which start it belongs to.
   void note(const TurnedMove& move);

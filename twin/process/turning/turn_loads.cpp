@@ -58,10 +58,50 @@ void TurnLoads::note(Trouble trouble, const Part& part, double seconds, const Va
   worst = {true, range, worst.seconds, part.source, part.start_s, part.from_mm};
 }
 
-void TurnLoads::take(const Part& part) {
+void TurnLoads::tell_unmeasured(SourceRef source, double start_s, double seconds,
+                                LoadListener* listener) const {
+  if (listener == nullptr) return;
+  CutLoad load;
+  load.start_s = start_s;
+  load.seconds = seconds;
+  load.tool = tool_ < tools_.size() ? tools_[tool_].number : 0;
+  load.source = source;
+  load.is_engaged = true;
+  load.is_measured = false;
+  listener->on_load(load);
+}
+
+/// Where on a part the cut begins is not known: what is in the air comes first.
+void TurnLoads::tell(const Part& part, CutLoad& load, LoadListener& listener) const {
   const TurnedWay& way = part.way;
-  if (tool_ >= tools_.size() || way.cut_mm <= 0 || way.feed_mm_per_rev <= 0 || part.rpm <= 0)
-    return;
+  const double cut_s = way.length_mm > 0 ? way.seconds * way.cut_mm / way.length_mm : 0;
+  load.tool = tools_[tool_].number;
+  load.source = part.source;
+  load.rpm = part.rpm;
+  if (way.seconds > cut_s) {
+    CutLoad air;
+    air.tool = load.tool, air.source = load.source, air.rpm = load.rpm;
+    air.start_s = part.start_s;
+    air.seconds = way.seconds - cut_s;
+    listener.on_load(air);
+  }
+  if (cut_s <= 0) return;
+  load.start_s = part.start_s + way.seconds - cut_s;
+  load.seconds = cut_s;
+  load.is_engaged = true;
+  listener.on_load(load);
+}
+
+void TurnLoads::take(const Part& part, LoadListener* listener) {
+  if (tool_ >= tools_.size()) return;
+  CutLoad load;
+  add(part, load);
+  if (listener != nullptr) tell(part, load, *listener);
+}
+
+void TurnLoads::add(const Part& part, CutLoad& told) {
+  const TurnedWay& way = part.way;
+  if (way.cut_mm <= 0 || way.feed_mm_per_rev <= 0 || part.rpm <= 0) return;
   Tool& tool = tools_[tool_];
   ToolLoads& loads = *tool.loads;
   const double seconds = way.seconds * way.cut_mm / way.length_mm;
@@ -69,6 +109,7 @@ void TurnLoads::take(const Part& part) {
       turning_load(wish_.material.value_or(Material{}),
                    {way.depth_mm, way.feed_mm_per_rev, part.sine, part.radius_mm, part.rpm});
   loads.chip_mm.add(load.chip_mm, seconds, part.source);
+  told.set(LoadKind::kChip, load.chip_mm);
   loads.speed_m_per_min.add(load.speed_m_per_min, seconds, part.source);
   if (tool.most_feed_mm && way.feed_mm_per_rev > *tool.most_feed_mm * kOver)
     note(kFeed, part, seconds, exactly(way.feed_mm_per_rev));
@@ -78,6 +119,9 @@ void TurnLoads::take(const Part& part) {
   loads.force_n.add(load.force_n, seconds, part.source, loads.force_most_n);
   loads.torque_nm.add(load.torque_nm, seconds, part.source, loads.torque_most_nm);
   loads.power_kw.add(power_kw, seconds, part.source, loads.power_most_kw);
+  told.set(LoadKind::kForce, load.force_n);
+  told.set(LoadKind::kTorque, load.torque_nm);
+  told.set(LoadKind::kPower, power_kw);
   const std::optional<SpeedRange>& speeds =
       wish_.material->speed_carbide ? wish_.material->speed_carbide : wish_.material->speed_hss;
   if (speeds && load.speed_m_per_min > speeds->high * kOver)

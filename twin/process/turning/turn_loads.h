@@ -18,6 +18,7 @@
 #include "twin/job/tool_loads.h"
 #include "twin/process/cutting_wish.h"
 #include "twin/process/engagement.h"
+#include "twin/process/load_listener.h"
 
 namespace kerf {
 
@@ -40,7 +41,11 @@ class TurnLoads {
     double start_s = 0;
     Vec3 from_mm{0};
   };
-  void take(const Part& part);
+  /// `listener`: is told what it was like; null: nobody is.
+  void take(const Part& part, LoadListener* listener = nullptr);
+  /// Of a feed move that nobody has measured, and that has cut.
+  void tell_unmeasured(SourceRef source, double start_s, double seconds,
+                       LoadListener* listener) const;
   /// The program is over: what is too much.
   void finish();
   void forget();
@@ -66,6 +71,8 @@ class TurnLoads {
     std::shared_ptr<ToolLoads> loads = std::make_shared<ToolLoads>();
     std::array<Worst, kTroubles> worst{};
   };
+  void add(const Part& part, CutLoad& told);
+  void tell(const Part& part, CutLoad& load, LoadListener& listener) const;
   void note(Trouble trouble, const Part& part, double seconds, const ValueRange& range);
   void tell(const Tool& tool);
   void tell(const Tool& tool, Trouble trouble, FindingId id, double limit, const std::string& text);

@@ -99,9 +99,10 @@ void TurningStage::finish(bool whole) {
     noses_.finish();
     report_nothing_cut();
   }
-  loads_.finish();
+  // Feeds between two samples tremble: of a watched machine only means count (LoadWatch).
+  if (!site_.watched) loads_.finish();
   for (ToolUse& use : uses_) {
-    use.loads = loads_.loads_of(use.number, use.shape);
+    if (!site_.watched) use.loads = loads_.loads_of(use.number, use.shape);
     if (use.peak_mm3_per_s == 0) close_window(use);
   }
 }
@@ -477,14 +478,19 @@ void TurningStage::cut_piece(const Motion& m, const TimedStep& step, TurnCut& wh
   if (site_.engagement && !site_.holding && is_feed(m)) note_engagement(m, step, piece);
 }
 
-/// Threads are fed by their lead, and driven tools mill: of neither is it measured.
+/// Threads are fed by their lead, and driven tools mill: of neither is it measured. Beside a
+/// machine without its program a threading tool seems to turn what it threads.
 void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const TurnCut& piece) {
   if (!engagement_begun_) site_.engagement->begin(stock_);
   engagement_begun_ = true;
   TurnedWay way;
   way.length_mm = path_length_mm(m);
-  if (m.kind == MotionKind::kThread || tap_lead_mm_ != 0 || is_driven()) {
-    if (piece.removed_mm3 > 0) site_.engagement->add_unmeasured(way.length_mm);
+  const bool threads = m.kind == MotionKind::kThread || tap_lead_mm_ != 0 ||
+                       (site_.watched && threads_.is_threading_tool());
+  if (threads || is_driven()) {
+    if (piece.removed_mm3 <= 0) return;
+    site_.engagement->add_unmeasured(way.length_mm);
+    loads_.tell_unmeasured(m.source, step.start_s, step.duration_s, site_.loads);
     return;
   }
   way.seconds = step.duration_s;
@@ -498,7 +504,8 @@ void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const
   way.chip_mm = way.feed_mm_per_rev * sine;
   site_.engagement->add_turned(mounted_->number, *mounted_->cutter, way);
   if (site_.recorder) site_.recorder->on_turned(site_.motion, way);
-  if (turns && sine > 0) take_load(m, step, way, sine);
+  // A tool in the air takes nothing, whatever its edge.
+  if (turns && (sine > 0 || way.cut_mm <= 0)) take_load(m, step, way, sine);
 }
 
 /// Where the workpiece is widest on the way: there it takes most torque, and no less power.
@@ -519,7 +526,7 @@ void TurningStage::take_load(const Motion& m, const TimedStep& step, const Turne
   part.source = m.source;
   part.start_s = step.start_s;
   part.from_mm = m.from_mm;
-  loads_.take(part);
+  loads_.take(part, site_.loads);
 }
 
 /// Of what has just been cut.

@@ -90,7 +90,7 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
   // directions and radii of a look are apart: half of those that are off are so.
   const bool flat = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
   // Cells alone know walls to half of one.
-  EXPECT_GE(brief.within, (flat ? 1.0 : kIsSanitized ? 0.45 : 0.6) * brief.looks) << brief.text();
+  EXPECT_GE(brief.within, (flat ? 1.0 : kIsSanitized ? 0.65 : 0.85) * brief.looks) << brief.text();
   EXPECT_GE(off.within, (flat ? 1.0 : kIsSanitized ? 0.8 : 0.9) * off.looks) << off.text();
 }
 

@@ -1,9 +1,9 @@
-// stock/zmap/block_list.h - the blocks of cells that a sweep can touch, listed before any cell is
+// stock/zmap/run_list.h - the blocks of cells that a sweep can touch, listed before any cell is
 // looked at.
 #pragma once
 
 #ifndef KERF_LANES_NAMESPACE
-#error "define KERF_LANES_NAMESPACE before including block_list.h"
+#error "define KERF_LANES_NAMESPACE before including run_list.h"
 #endif
 
 #include "stock/zmap/lanes.h"
@@ -29,31 +29,41 @@ inline int floor_int(double x) {
   return i > x ? i - 1 : i;
 }
 
-/// Blocks to be worked off. p, q: position of the block's first cell in the frame of the sweep
-/// (strip: u, v; else x, y from its centre); track: height of a strip's track there.
-struct alignas(32) Block {
+/// Blocks of one row of one tile, side by side. p, q: position of the first cell of the first block
+/// in the frame of the sweep (strip: u, v; else x, y from its centre); track: height of a strip's
+/// track there. Those of the next block are one RunStep further, by one addition each.
+struct alignas(32) Run {
   float p, q, track;
-  float steps;          ///< blocks from the first of its run
-  std::int32_t bi, bj;  ///< column of the first block of its run; row
-  float* cells;
-  int column() const { return bi + static_cast<int>(steps); }
+  std::int32_t count;
+  std::int32_t bi, bj;  ///< column of the first block; row
+  float* cells;         ///< of the first block
 };
-constexpr int kListBlocks = 384;
+/// Per block along a row of blocks.
+struct RunStep {
+  float p, q, track;
+};
 /// From the first cell of a block to its centre, in cells.
 constexpr double kHalfX = 0.5 * (kBlockX - 1);
 constexpr double kHalfY = 0.5 * (kBlockY - 1);
 
-/// Holds more than kListBlocks, so that room need not be looked for with every run: at most eight
-/// short runs or one run of a tile come between two looks.
-struct WorkList {
-  static constexpr int kCapacity = kListBlocks + 48;
-  int count = 0;
-  Block blocks[kCapacity];
+/// Room is looked for before at most kRunsAtOnce runs of kShortRun blocks, or a run of a tile.
+constexpr int kRunsAtOnce = 16;
+constexpr int kShortRun = 4;
+struct RunList {
+  static constexpr int kFull = 128, kCapacity = kFull + kTileBlocksX;
+  /// With what comes between two looks for room still within what 32-bit lanes add up
+  /// (kRemovedUnit_mm).
+  static constexpr int kMostBlocks = 384;
+  static_assert(kRunsAtOnce * kShortRun <= 64 && kMostBlocks + 64 <= 512);
+  int count = 0, blocks = 0;
+  Run runs[kCapacity];
+  bool is_full() const { return count > kFull || blocks > kMostBlocks; }
+  void clear() { count = blocks = 0; }
 };
 
 /// Blocks that lie well within the width of a strip, and those that may reach its edge.
-struct WorkLists {
-  WorkList interior, edge;
+struct RunLists {
+  RunList interior, edge;
 };
 
 /// What one sweep needs on one band; knows how to walk rows and where cells are.
@@ -93,6 +103,12 @@ struct RunStart {
   float p, q, track;
 };
 
+inline RunStep run_step(const GridView& grid, const Frame& f) {
+  return {static_cast<float>(kBlockX * grid.cell_x * f.cos),
+          static_cast<float>(-kBlockX * grid.cell_x * f.sin),
+          static_cast<float>(f.slope * kBlockX * grid.cell_x * f.cos)};
+}
+
 inline RunStart run_start(const SweepContext& c, const Frame& f, int bi, int bj) {
   const double x = c.center_x(bi), y = c.center_y(bj);
   const double p = x * f.cos + y * f.sin, q = y * f.cos - x * f.sin;
@@ -106,8 +122,8 @@ class RunWriter {
   using Flush = void (*)(void* with);
 
   /// Blocks whose centre lies within `interior_mm` of the track are interior (none if negative).
-  RunWriter(SweepContext& c, WorkLists& lists, const Frame& f, double interior_mm,
-            Flush empty_lists, void* sweep)
+  RunWriter(SweepContext& c, RunLists& lists, const Frame& f, double interior_mm, Flush empty_lists,
+            void* sweep)
       : c_(c),
         lists_(lists),
         frame_(f),
@@ -116,10 +132,7 @@ class RunWriter {
         interior_(static_cast<float>(interior_mm)),
         to_center_(
             static_cast<float>(kHalfY * c.grid.cell_y * f.cos - kHalfX * c.grid.cell_x * f.sin)),
-        dp_(static_cast<float>(kBlockX * c.grid.cell_x * f.cos)),
-        dq_(static_cast<float>(-kBlockX * c.grid.cell_x * f.sin)),
-        dt_(static_cast<float>(f.slope * kBlockX * c.grid.cell_x * f.cos)),
-        step_(F4::of(dp_, dq_, dt_, 1)) {}
+        step_(run_step(c.grid, f)) {}
 
   /// Blocks b0..b1 of row bj; positions computed afresh in double precision in each tile.
   [[gnu::noinline]] void add(int bj, int b0, int b1) {
@@ -135,29 +148,26 @@ class RunWriter {
     const float to_middle = static_cast<float>(kHalfX * c_.grid.cell_x);
     for (int bi = b0; bi <= b1;) {
       const int tile_end = bi | (kTileBlocksX - 1), last = tile_end < b1 ? tile_end : b1;
-      make_room();
-      float* cells = first_cell(bj, bi);
       const RunStart at = run_start(c_, frame_, bi, bj);
-      F4 place = F4::of(at.p, at.q, at.track, 0);
-      float x = at.p + to_middle;
-      for (int k = 0; k <= last - bi; ++k, place = place + step_, x += dp_) {
+      put_sorted(bj, bi, last - bi + 1, at, at.p + to_middle, step_.p, [&](float x) {
         const float a = __builtin_fabsf(x);
-        WorkList& list = ((a >= near) & (a <= far)) ? lists_.interior : lists_.edge;
-        write(list.blocks[list.count++], place, bi, bj, cells + kBlockFloats * k);
-      }
+        return (a >= near) & (a <= far);
+      });
       bi = last + 1;
     }
   }
-  /// Room for eight short runs.
+  /// Room for kRunsAtOnce short runs.
   void make_room() {
-    if (lists_.interior.count > kListBlocks || lists_.edge.count > kListBlocks) [[unlikely]]
+    if (lists_.interior.is_full() || lists_.edge.is_full()) [[unlikely]]
       flush();
   }
-  /// A run whose start is known; interior as the caller found. Room must have been made.
+  /// A run whose start is known (p, q, track, 0); interior as the caller found. Room must have been
+  /// made.
   [[gnu::always_inline]] void add_short(int bj, int b0, int count, const float* start,
                                         bool interior) {
-    if (b0 % kTileBlocksX + count <= kTileBlocksX && count <= kBlindBlocks) [[likely]]
-      put_few(bj, b0, count, start, interior);
+    if (b0 % kTileBlocksX + count <= kTileBlocksX && count <= kShortRun) [[likely]]
+      write(interior ? lists_.interior : lists_.edge, F4::load(start), b0, bj, count,
+            first_cell(bj, b0));
     else
       add_across_tiles(bj, b0, count, {start[0], start[1], start[2]});
   }
@@ -167,7 +177,7 @@ class RunWriter {
   /// From the first cell of a block to its centre, and from one block of a row to the next, across
   /// the track.
   float to_center() const { return to_center_; }
-  float step_q() const { return dq_; }
+  float step_q() const { return step_.q; }
   float interior() const { return interior_; }
 
  private:
@@ -178,38 +188,42 @@ class RunWriter {
     return c_.tile(static_cast<int>(tile)) +
            (row % kTileBlocksY * kTileBlocksX + column % kTileBlocksX) * kBlockFloats;
   }
-  bool is_interior(float q_center) const { return __builtin_fabsf(q_center) <= interior_; }
-  static void write(Block& block, F4 place, int bi, int bj, float* cells) {
-    store(&block.p, place);
-    block.bi = bi;
-    block.bj = bj;
-    block.cells = cells;
+  static void write(RunList& list, F4 start, int bi, int bj, int count, float* cells) {
+    Run& run = list.runs[list.count++];
+    list.blocks += count;
+    store(&run.p, start);
+    run.count = count;
+    run.bi = bi;
+    run.bj = bj;
+    run.cells = cells;
   }
 
-  /// Up to kBlindBlocks, written whether needed or not: cheaper than guessing wrongly how many
-  /// there are.
-  [[gnu::always_inline]] void put_few(int bj, int b0, int count, const float* start,
-                                      bool interior) {
-    WorkList& list = interior ? lists_.interior : lists_.edge;
-    Block* out = list.blocks + list.count;
-    list.count += count;
-    float* cells = first_cell(bj, b0);
-    const F4 first = F4::load(start), second = first + step_;
-    write(out[0], first, b0, bj, cells);
-    write(out[1], second, b0, bj, cells + kBlockFloats);
-    const F4 third = second + step_;
-    write(out[2], third, b0, bj, cells + 2 * kBlockFloats);
-    write(out[3], third + step_, b0, bj, cells + 3 * kBlockFloats);
-  }
   /// Blocks of one tile.
   void put(int bj, int b0, int count, RunStart at) {
+    put_sorted(bj, b0, count, at, at.q + to_center_, step_.q,
+               [this](float q) { return __builtin_fabsf(q) <= interior_; });
+  }
+  /// Blocks of one tile; is_interior(x) of a block says which list is its own, with x one
+  /// `step` further with each block.
+  template <class IsInterior>
+  void put_sorted(int bj, int b0, int count, RunStart at, float x, float step,
+                  const IsInterior& is_interior) {
     make_room();
-    float* cells = first_cell(bj, b0);
-    F4 place = F4::of(at.p, at.q, at.track, 0);
-    float q = at.q + to_center_;
-    for (int k = 0; k < count; ++k, place = place + step_, q += dq_) {
-      WorkList& list = is_interior(q) ? lists_.interior : lists_.edge;
-      write(list.blocks[list.count++], place, b0, bj, cells + kBlockFloats * k);
+    float* const cells = first_cell(bj, b0);
+    const F4 next = F4::of(step_.p, step_.q, step_.track, 0);
+    F4 place = F4::of(at.p, at.q, at.track, 0), start = place;
+    int first = 0;
+    bool interior = is_interior(x);
+    for (int k = 1; k <= count; ++k) {
+      place = place + next;
+      x += step;
+      const bool same = k < count && is_interior(x) == interior;
+      if (same) continue;
+      write(interior ? lists_.interior : lists_.edge, start, b0 + first, bj, k - first,
+            cells + kBlockFloats * first);
+      start = place;
+      first = k;
+      interior = !interior;
     }
   }
   [[gnu::noinline]] void add_across_tiles(int bj, int b0, int count, RunStart at) {
@@ -218,20 +232,18 @@ class RunWriter {
       const int tile_end = (b0 | (kTileBlocksX - 1)) + 1, stop = tile_end < end ? tile_end : end;
       put(bj, b0, stop - b0, at);
       const float n = static_cast<float>(stop - b0);
-      at = {at.p + n * dp_, at.q + n * dq_, at.track + n * dt_};
+      at = {at.p + n * step_.p, at.q + n * step_.q, at.track + n * step_.track};
       b0 = stop;
     }
   }
 
-  static constexpr int kBlindBlocks = 4;
   SweepContext& c_;
-  WorkLists& lists_;
+  RunLists& lists_;
   const Frame& frame_;
   Flush flush_;
   void* sweep_;
   float interior_, to_center_;
-  float dp_, dq_, dt_;
-  F4 step_;
+  RunStep step_;
 };
 
 }  // namespace kerf::KERF_LANES_NAMESPACE

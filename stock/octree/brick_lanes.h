@@ -1,0 +1,466 @@
+// stock/octree/brick_lanes.h - how one sweep is taken from one brick, kLanes points at a time.
+//
+// Compiled once for each instruction set, as sweep_lanes.h is, and by the same rules.
+#pragma once
+
+#include <bit>
+#include <cstring>
+
+#include "stock/octree/brick_work.h"
+#include "stock/octree/edge_roots.h"
+#include "stock/octree/lane_vectors.h"
+#include "stock/octree/node_list.h"
+#include "stock/octree/sweep_lanes.h"
+
+namespace kerf::octree {
+namespace {
+
+/// F is convex, or close to what is: tangent planes tell what it is not less than. Where it is
+/// found by iteration they hold to kSweepSlack_mm.
+inline bool has_planes(Sweep::Kind kind) { return kind != Sweep::Kind::kArc; }
+
+/// A turning piece's way without the turn.
+inline void fix_spindle(Sweep& fixed) {
+  fixed.w = fixed.mean_w;
+  fixed.bend_mm = 0;
+  const ToolBody::Shape shape = fixed.body->shape;
+  fixed.kind = shape == ToolBody::Shape::kBall     ? Sweep::Kind::kBall
+               : shape == ToolBody::Shape::kSphere ? Sweep::Kind::kSphere
+                                                   : Sweep::Kind::kRamp;
+}
+
+/// By how much F of a turning piece may differ from that without the turn, in this brick: a body of
+/// revolution that turns by an angle about its tip is as if the point moved about that.
+inline double off_mean_mm(const BrickWork& work, const Sweep& turning) {
+  const auto way = [&](int axis, double origin) {
+    return 0.5 * (work.place_mm[axis][0] + work.place_mm[axis][kBrick]) - origin;
+  };
+  const auto length = [](double x, double y, double z) {
+    return __builtin_sqrt(x * x + y * y + z * z);
+  };
+  const Vec3 &origin = turning.origin_mm, &step = turning.step;
+  const double reach = length(way(0, origin.x), way(1, origin.y), way(2, origin.z)) +
+                       work.half_diagonal_mm + length(step.x, step.y, step.z);
+  return turning.off_rad * reach;
+}
+
+/// Tangent planes in the middles of the blocks.
+inline void set_planes(BrickWork& work, const Points& p, const Gradients& g, double off_mm) {
+  store_lanes(g.x, work.plane_x);
+  store_lanes(g.y, work.plane_y);
+  store_lanes(g.z, work.plane_z);
+  store_lanes(g.f - (g.x * p.x + g.y * p.y + g.z * p.z) - all(off_mm), work.plane_at);
+}
+
+KERF_LANES Masks is_near(const Doubles& f, double value, double off) {
+  return (all(value - off) <= f) & (f <= all(value + off));
+}
+
+/// A turning piece's F is dear, that without the turn may be cheap and decide most.
+inline bool has_cheap_twin(const BrickWork& work, const Sweep& sweep) {
+  return sweep.kind == Sweep::Kind::kTurn && !is_dear(work.fixed.kind);
+}
+
+/// Which of the 2 x 2 x 2 blocks F decides at once, as it cannot change faster than by 1 mm a mm.
+/// False: none of them is reached.
+inline bool sort_blocks(BrickWork& work, const Sweep& sweep) {
+  double* const x = work.x;  // points of no others yet
+  double* const y = work.y;
+  double* const z = work.z;
+  for (int b = 0; b < 8; ++b) {
+    const auto middle = [&](int axis, int low) {
+      return 0.5 * (work.place_mm[axis][low] + work.place_mm[axis][low + kNodeBlock]);
+    };
+    x[b] = middle(0, (b & 1) * kNodeBlock);
+    y[b] = middle(1, (b >> 1 & 1) * kNodeBlock);
+    z[b] = middle(2, (b >> 2) * kNodeBlock);
+  }
+  const Points p = load_points(x, y, z, 0);
+  const double clear = work.block_clear_mm;
+  Gradients g;
+  if (sweep.kind == Sweep::Kind::kTurn) {
+    work.fixed = sweep;
+    fix_spindle(work.fixed);
+    evaluate<true>(work.fixed, &p, 1, &g);
+    const double off = off_mean_mm(work, sweep);
+    set_planes(work, p, g, off);
+    work.off_mm = off + 2 * kSweepSlack_mm + kBlockSlack_mm;
+    const auto near = [&](double f) { return is_near(g.f, f, work.off_mm); };
+    if (any(near(-clear) | near(clear) | near(clear + kReachMargin_mm)))
+      evaluate<false>(sweep, &p, 1, &g);
+  } else {
+    evaluate<true>(sweep, &p, 1, &g);
+    set_planes(work, p, g, 0);
+  }
+  store_lanes(g.f, work.f);
+  bool reaches = false;
+  for (int b = 0; b < 8; ++b) {
+    const double f = work.f[b];
+    work.blocks[b] = f > clear    ? BrickWork::kOutside
+                     : f < -clear ? BrickWork::kInside
+                                  : BrickWork::kMixed;
+    if (f <= clear + kReachMargin_mm) work.reached |= 1u << b;
+    reaches |= work.blocks[b] != BrickWork::kOutside;
+  }
+  return reaches;
+}
+
+/// Node numbers into places.
+inline void place_nodes(BrickWork& work, int count) {
+  const int room = padded(count);
+  for (int n = count; n < room; ++n) work.nodes[n] = 0;
+  for (int n = 0; n < room; ++n) {
+    const int node = work.nodes[n];
+    work.x[n] = work.origin_mm[0] + (work.first[0] + (node >> 4 & 15)) * work.cell_mm[0];
+    work.y[n] = work.origin_mm[1] + (work.first[1] + (node >> 8)) * work.cell_mm[1];
+    work.z[n] = work.origin_mm[2] + (work.first[2] + (node & 15)) * work.cell_mm[2];
+  }
+}
+
+/// Takes in F at the listed nodes, which is `off` more or less, and clears nodes. Lists anew those
+/// that it does not decide, and returns how many there are.
+inline int clear_nodes(BrickWork& work, int points, double off, bool& cleared) {
+  int left = 0;
+  for (int n = 0; n < points; ++n) {
+    const std::uint16_t node = work.nodes[n];
+    const double most = work.f[n] + off;
+    work.node_f[node] = most;
+    if (most < 0) {
+      std::uint16_t& column = work.columns[(node >> 8) * kSide + (node >> 4 & 15)];
+      column = static_cast<std::uint16_t>(column & ~(1u << (node & 15)));
+      cleared = true;
+    } else if (work.f[n] < off) {
+      work.nodes[left++] = node;
+    }
+  }
+  return left;
+}
+
+/// Sets work.columns; true if a node has been cleared.
+inline bool find_nodes(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+  std::memcpy(work.columns, brick.columns, sizeof work.columns);
+  bool cleared = false;
+  int points = list_nodes(work, has_planes(sweep.kind), brick, cleared);
+  if (points > 0 && has_cheap_twin(work, sweep)) {
+    place_nodes(work, points);
+    lanes_distance(work.fixed, points, work.x, work.y, work.z, work.f);
+    points = clear_nodes(work, points, work.off_mm, cleared);
+  }
+  place_nodes(work, points);
+  lanes_distance(sweep, points, work.x, work.y, work.z, work.f);
+  clear_nodes(work, points, 0, cleared);
+  return cleared;
+}
+
+/// The edges near the sweep: those that were crossed and still are, those that are now, and those
+/// that are no more.
+inline void sort_edges(BrickWork& work, const OpenBrick& brick) {
+  const auto near_of = [&](int block) {
+    return static_cast<std::uint16_t>((work.blocks[block] != BrickWork::kOutside ? 0x0f : 0) |
+                                      (work.blocks[block + 4] != BrickWork::kOutside ? 0xf0 : 0));
+  };
+  Words near[2];
+  for (int by = 0; by < 2; ++by) near[by] = four_each<Words>(near_of(2 * by), near_of(2 * by + 1));
+  for (int j = 0; j < kBrick; ++j) {
+    const std::uint16_t* const before = brick.columns + j * kSide;
+    const std::uint16_t* const after = work.columns + j * kSide;
+    const Words from = load_lanes<Words>(before), to = load_lanes<Words>(after);
+    const auto sort = [&](int axis, const Words& next_from, const Words& next_to) {
+      const Words was = (from ^ next_from) & near[j / kNodeBlock];
+      const Words is = (to ^ next_to) & near[j / kNodeBlock];
+      const auto put = [&](const Words& edges, std::uint8_t* bytes) {
+        store_lanes(__builtin_convertvector(edges, Bytes), bytes + axis * 64 + j * kBrick);
+      };
+      put(was & is, work.kept);
+      put(is & ~was, work.fresh);
+      put(was & ~is, work.lost);
+    };
+    sort(0, load_lanes<Words>(before + 1), load_lanes<Words>(after + 1));
+    sort(1, load_lanes<Words>(before + kSide), load_lanes<Words>(after + kSide));
+    sort(2, from >> 1, to >> 1);
+  }
+}
+
+/// Calls visit(edge) for each bit, with kLowerIsSolid by `columns`.
+template <class Visit>
+inline void for_each_edge(const std::uint8_t* bytes, const std::uint16_t* columns,
+                          const Visit& visit) {
+  for (int word = 0; word < kEdges / 64; ++word) {
+    std::uint64_t bits;
+    std::memcpy(&bits, bytes + word * 8, 8);
+    if constexpr (std::endian::native == std::endian::big) bits = __builtin_bswap64(bits);
+    const std::uint16_t* const row = columns + word % kBrick * kSide;
+    for (; bits != 0; bits &= bits - 1) {
+      const int at = __builtin_ctzll(bits);
+      const unsigned low = row[at >> 3] >> (at & 7) & 1u;
+      visit(static_cast<std::uint16_t>(static_cast<unsigned>(word * 64 + at) |
+                                       (low ? kLowerIsSolid : 0u)));
+    }
+  }
+}
+
+/// Air beyond the blank's face stays, where material is added: a crossing is not before the face.
+inline double start_of(const BrickWork& work, unsigned edge) {
+  if (!work.at_end) return 0;
+  const SolidEnd end(edge);
+  const int axis = axis_of(edge), at[3] = {end.i, end.j, end.k};
+  const int node = work.first[axis] + at[axis];
+  return node == 0 || node > work.cells[axis] ? work.cell_mm[axis] / 2 : 0;
+}
+
+/// Where the crossing of an edge lies, mm from its solid end.
+inline double reach_of(const BrickWork& work, const OpenBrick& brick, unsigned edge) {
+  const int lower = brick.place[edge_of(edge)];
+  return work.cell_mm[axis_of(edge)] * ((edge & kLowerIsSolid) ? lower : kEdgeParts - lower) /
+         kEdgeParts;
+}
+
+inline void push(EdgeList& list, unsigned edge, double start, double reach) {
+  list.edge[list.count] = static_cast<std::uint16_t>(edge);
+  list.start[list.count] = start;
+  list.reach[list.count++] = reach;
+}
+
+/// Places of the edges' crossings as points.
+inline void place_crossings(BrickWork& work, EdgeList& list) {
+  const int room = padded(list.count);
+  for (int n = list.count; n < room; ++n) {
+    list.edge[n] = 0;
+    list.reach[n] = 0;
+  }
+  for (int n = 0; n < room; ++n) {
+    const int edge = list.edge[n], axis = edge >> 9 & 3;
+    const bool lower = (edge & static_cast<int>(kLowerIsSolid)) != 0;
+    const int up = lower ? 0 : 1;
+    const double way = lower ? list.reach[n] : -list.reach[n];
+    const int i = (edge >> 3 & 7) + (axis == 0 ? up : 0),
+              j = (edge >> 6 & 7) + (axis == 1 ? up : 0), k = (edge & 7) + (axis == 2 ? up : 0);
+    work.x[n] = work.origin_mm[0] + (work.first[0] + i) * work.cell_mm[0] + (axis == 0 ? way : 0);
+    work.y[n] = work.origin_mm[1] + (work.first[1] + j) * work.cell_mm[1] + (axis == 1 ? way : 0);
+    work.z[n] = work.origin_mm[2] + (work.first[2] + k) * work.cell_mm[2] + (axis == 2 ? way : 0);
+  }
+}
+
+/// Where F is dear: may it be less than 0 at the edge's crossing, which lies `reach` from its solid
+/// end? By a plane, or by that end, from where F falls by 1 mm a mm at most.
+inline bool may_reach(const BrickWork& work, const Sweep& sweep, unsigned edge, double reach) {
+  const SolidEnd end(edge);
+  const int b = end.block();
+  if (has_planes(sweep.kind)) {
+    const EdgeWay& way = kEdgeWays[edge >> 9];
+    return work.plane_at[b] + work.plane_x[b] * (work.place_mm[0][end.i] + way.along[0] * reach) +
+               work.plane_y[b] * (work.place_mm[1][end.j] + way.along[1] * reach) +
+               work.plane_z[b] * (work.place_mm[2][end.k] + way.along[2] * reach) <
+           kBlockSlack_mm;
+  }
+  return work.blocks[b] != BrickWork::kMixed || work.node_f[end.node()] < reach;
+}
+
+/// Lists edges that keep a crossing whose crossing may lie inside of the sweep.
+inline void list_kept(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+  const bool sifts = (is_dear(sweep.kind) || sweep.kind == Sweep::Kind::kArc) && !work.additive;
+  work.kept_edges.count = 0;
+  for_each_edge(work.kept, work.columns, [&](unsigned edge) {
+    const double reach = reach_of(work, brick, edge), start = start_of(work, edge);
+    if (!(reach > start)) return;
+    if (sifts && !may_reach(work, sweep, edge, reach)) return;
+    push(work.kept_edges, edge, start, reach);
+  });
+}
+
+/// Takes in F at the crossings of kept_edges, which is `off` more or less: deeper ones are pushed
+/// to open_edges, those that it does not decide stay listed.
+inline void push_deeper(BrickWork& work, double off) {
+  EdgeList& kept = work.kept_edges;
+  int left = 0;
+  for (int n = 0; n < kept.count; ++n) {
+    if (work.f[n] + off < -work.place_slack_mm) {
+      push(work.open_edges, kept.edge[n], kept.start[n], kept.reach[n]);
+    } else if (work.f[n] - off < -work.place_slack_mm) {
+      kept.edge[left] = kept.edge[n];
+      kept.start[left] = kept.start[n];
+      kept.reach[left++] = kept.reach[n];
+    }
+  }
+  kept.count = left;
+}
+
+/// Begins open_edges with those whose crossing lies inside of the sweep, by more than a crossing's
+/// place is good for, so that a second cut changes nothing.
+inline void open_deeper(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+  list_kept(work, sweep, brick);
+  EdgeList& kept = work.kept_edges;
+  work.open_edges.count = 0;
+  if (kept.count > 0 && has_cheap_twin(work, sweep)) {
+    place_crossings(work, kept);
+    lanes_distance(work.fixed, kept.count, work.x, work.y, work.z, work.f);
+    push_deeper(work, work.off_mm);
+  }
+  place_crossings(work, kept);
+  lanes_distance(sweep, kept.count, work.x, work.y, work.z, work.f);
+  push_deeper(work, 0);
+  work.deeper = work.open_edges.count;
+}
+
+/// Of the lost edges those that may have a film behind them, by where they are; false if none has.
+inline bool sift_lost(const BrickWork& work, const Sweep& sweep, const OpenBrick& brick,
+                      std::uint8_t* far) {
+  const auto open_of = [&](int block) {
+    return static_cast<std::uint8_t>((work.blocks[block] != BrickWork::kInside ? 0x0f : 0) |
+                                     (work.blocks[block + 4] != BrickWork::kInside ? 0xf0 : 0));
+  };
+  // An endless tool that stands upright leaves nothing above.
+  const bool takes_roofs = sweep.body->endless && sweep.bottom_mm > -1e300;
+  Bytes left = {};
+  for (int by = 0; by < 2; ++by) {
+    const Bytes open = four_each<Bytes>(open_of(2 * by), open_of(2 * by + 1));
+    for (int j = by * kNodeBlock; j < (by + 1) * kNodeBlock; ++j) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int row = axis * 64 + j * kBrick;
+        Bytes edges = load_lanes<Bytes>(work.lost + row) & open;
+        if (axis == 2 && takes_roofs) {
+          const Words lower = load_lanes<Words>(brick.columns + j * kSide) & 0xff;
+          edges = edges & ~__builtin_convertvector(lower, Bytes);
+        }
+        store_lanes(edges, far + row);
+        left |= edges;
+      }
+    }
+  }
+  std::uint64_t bits;
+  store_lanes(left, &bits);
+  return bits != 0;
+}
+
+/// Leaves in lost_edges those whose solid node has gone and whose crossing lies so far outside of
+/// the sweep that it may be the far face of a film, with F and its gradient there.
+inline void find_lost(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+  EdgeList& lost = work.lost_edges;
+  lost.count = 0;
+  if (!work.seeks_films) return;
+  std::uint8_t far[kEdges / 8];
+  if (!sift_lost(work, sweep, brick, far)) return;
+  for_each_edge(far, brick.columns, [&](unsigned edge) {
+    const double reach = reach_of(work, brick, edge);
+    const SolidEnd end(edge);
+    if (work.blocks[end.block()] == BrickWork::kMixed &&
+        work.node_f[end.node()] + reach <= kLeastFilm_mm)
+      return;
+    push(lost, edge, 0, reach);
+  });
+  if (lost.count == 0) return;
+  place_crossings(work, lost);
+  lanes_distance(sweep, lost.count, work.x, work.y, work.z, work.f);
+  int left = 0;
+  for (int n = 0; n < lost.count; ++n) {
+    if (!(work.f[n] > kLeastFilm_mm + work.place_slack_mm)) continue;
+    lost.edge[left] = lost.edge[n];
+    lost.reach[left++] = lost.reach[n];
+  }
+  lost.count = left;
+}
+
+inline void open_fresh(BrickWork& work) {
+  for_each_edge(work.fresh, work.columns, [&](unsigned edge) {
+    push(work.open_edges, edge, start_of(work, edge), work.cell_mm[axis_of(edge)]);
+  });
+}
+
+/// What a crossing along Z adds to its column's height.
+inline std::int32_t height_part(unsigned edge, int place) {
+  return (edge & kLowerIsSolid) ? place : kEdgeParts - place;
+}
+
+/// Finds the crossings of open_edges, and takes them over.
+inline void write_open(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
+  EdgeList& open = work.open_edges;
+  for (int n = open.count; n < padded(open.count); ++n) {
+    open.edge[n] = open.edge[0];
+    open.start[n] = open.start[0];
+    open.reach[n] = open.reach[0];
+  }
+  Roots roots[kRootGroups];
+  for (int first = 0; first < open.count; first += W) {
+    const int group = first / W % kRootGroups, left = (open.count - first + W - 1) / W;
+    if (group == 0) solve(work, sweep, first, left < kRootGroups ? left : kRootGroups, roots);
+    Crossings found;
+    write_crossings(roots[group], open.edge + first, found);
+    const int count = open.count - first < W ? open.count - first : W;
+    for (int l = 0; l < count; ++l) {
+      const unsigned edge = open.edge[first + l];
+      const int e = edge_of(edge);
+      const bool was = first + l < work.deeper;
+      work.removed += (was ? brick.share[e] : 0) - found.share[l];
+      if (axis_of(edge) == 2)
+        work.heights[e >> 3 & 63] +=
+            (was ? height_part(edge, brick.place[e]) : 0) - height_part(edge, found.place[l]);
+      brick.place[e] = static_cast<std::uint16_t>(found.place[l]);
+      brick.share[e] = found.share[l];
+      brick.direction[e] = found.direction[l];
+      brick.id[e] = sweep.cut_id;
+    }
+  }
+}
+
+/// Takes the nodes' new state over, and measures what is gone with it.
+inline void take_columns(BrickWork& work, OpenBrick& brick) {
+  std::memset(work.heights, 0, sizeof work.heights);
+  work.removed = 0;
+  std::int64_t cleared = 0;
+  for (int j = 0; j < kBrick; ++j) {
+    for (int i = 0; i < kBrick; ++i) {
+      const unsigned before = brick.columns[j * kSide + i], after = work.columns[j * kSide + i];
+      if (before == after) continue;
+      cleared += __builtin_popcount((before ^ after) & 0xffu);
+      work.heights[j * kBrick + i] = (__builtin_popcount(before & before >> 1 & 0xffu) -
+                                      __builtin_popcount(after & after >> 1 & 0xffu)) *
+                                     kEdgeParts;
+    }
+  }
+  for_each_edge(work.lost, brick.columns, [&](unsigned edge) {
+    const int e = edge_of(edge);
+    work.removed += brick.share[e];
+    if (axis_of(edge) == 2) work.heights[e >> 3 & 63] += height_part(edge, brick.place[e]);
+  });
+  work.removed += cleared * kNodeVolume;
+}
+
+inline void finish(BrickWork& work, OpenBrick& brick) {
+  brick.volume -= work.removed;
+  for (int c = 0; c < kBrick * kBrick; ++c) brick.height_of[c] -= work.heights[c];
+  unsigned any = 0;
+  std::memcpy(brick.columns, work.columns, sizeof work.columns);
+  for (int c = 0; c < kSide * kSide; ++c) any |= work.columns[c];
+  brick.top_node = any == 0 ? -1 : 31 - __builtin_clz(any);
+  brick.top_is_known = false;
+}
+
+bool brick_remove(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
+  if (!sort_blocks(work, sweep)) return false;
+  const bool cleared = find_nodes(work, sweep, brick);
+  sort_edges(work, brick);
+  open_deeper(work, sweep, brick);
+  if (!cleared && work.open_edges.count == 0) return false;
+  find_lost(work, sweep, brick);
+  open_fresh(work);
+  take_columns(work, brick);
+  write_open(work, sweep, brick);
+  finish(work, brick);
+  if (work.lost_edges.count > 0) {
+    place_crossings(work, work.lost_edges);
+    lanes_gradient(sweep, work.lost_edges.count, work.x, work.y, work.z, work.f, work.gx, work.gy,
+                   work.gz);
+  }
+  return true;
+}
+
+bool brick_meets(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+  if (!sort_blocks(work, sweep)) return false;
+  if (find_nodes(work, sweep, brick)) return true;
+  sort_edges(work, brick);
+  open_deeper(work, sweep, brick);
+  return work.open_edges.count > 0;
+}
+
+}  // namespace
+}  // namespace kerf::octree
