@@ -120,20 +120,9 @@ const kFragment = "precision highp float; varying vec3 n, p; varying vec4 c; uni
   + " gl_FragColor = vec4(c.rgb * light, 1.0); }";
 
 function makeView(canvas) {
-  const gl = canvas.getContext("webgl", { antialias: true, alpha: false });
-  if (!gl) return null;
-  const program = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) { console.error(gl.getShaderInfoLog(shader)); return null; }
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) { console.error(gl.getProgramInfoLog(program)); return null; }
-  gl.useProgram(program);
-  const attribute = (name) => gl.getAttribLocation(program, name), uniform = (name) => gl.getUniformLocation(program, name);
+  const made = startDrawing(canvas, kVertex, kFragment, true);
+  if (!made) return null;
+  const { gl, attribute, uniform } = made;
   const aPlace = attribute("place"), aNormal = attribute("normal"), aColor = attribute("color");
   const uView = uniform("view"), uPlane = uniform("plane"), uEye = uniform("eye"), uKind = uniform("kind"), uSize = uniform("size");
   const buffer = (values) => { const b = gl.createBuffer(); gl.bindBuffer(gl.ARRAY_BUFFER, b); gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW); return b; };
@@ -163,22 +152,10 @@ function makeView(canvas) {
   const markColors = buffer(new Uint8Array(marked.flatMap(([f]) => [...severityColor[f.severity], 255])));
 
   const middle = [0, 1, 2].map((i) => (box[0][i] + box[1][i]) / 2);
-  const state = { yaw: 0.62, pitch: 0.6, zoom: 1, target: middle.slice(), axis: -1, share: 0.5, chosen: -1, spot: null };
+  const state = { yaw: 0.62, pitch: 0.6, zoom: 1, span, target: middle.slice(), axis: -1, share: 0.5, chosen: -1, spot: null };
 
-  // Rows of the eye's frame: right, up, towards the eye.
-  function frame() {
-    const [cy, sy, cp, sp] = [Math.cos(state.yaw), Math.sin(state.yaw), Math.cos(state.pitch), Math.sin(state.pitch)];
-    const rows = [[cy, sy, 0], [-sy * sp, cy * sp, cp], [sy * cp, -cy * cp, sp]];
-    return data.lathe ? rows.map((r) => [r[2], -r[1], r[0]]) : rows;  // Z to the right, X up
-  }
-  function matrix(width, height) {
-    const [right, up, eye] = frame(), scale = 1.7 / span * state.zoom, aspect = width / height;
-    const sx = aspect >= 1 ? scale / aspect : scale, sy = aspect >= 1 ? scale : scale * aspect;
-    const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2], sz = -1 / (4 * span);
-    return [right[0] * sx, up[0] * sy, eye[0] * sz, 0, right[1] * sx, up[1] * sy, eye[1] * sz, 0,
-      right[2] * sx, up[2] * sy, eye[2] * sz, 0,
-      -dot(right, state.target) * sx, -dot(up, state.target) * sy, -dot(eye, state.target) * sz, 1];
-  }
+  const rows = () => eyeRows(state, data.lathe);
+  const matrix = (width, height) => eyeMatrix(state, rows(), width, height, 4);
   const bind = (location, b, size, type, normalized) => {
     if (location < 0) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, b);
@@ -187,7 +164,7 @@ function makeView(canvas) {
   };
   function draw(width = canvas.width, height = canvas.height) {
     const low = [0, 1, 2].map((i) => Math.min(box[0][i], data.mesh.min[i])), high = [0, 1, 2].map((i) => Math.max(box[1][i], data.mesh.max[i]));
-    const eye = frame()[2], plane = [0, 0, 0, 1e9];
+    const eye = rows()[2], plane = [0, 0, 0, 1e9];
     if (state.axis >= 0) {
       // What is nearer to the eye is cut away.
       const sign = eye[state.axis] >= 0 ? 1 : -1;
@@ -250,16 +227,11 @@ function makeView(canvas) {
   function redraw() {
     if (due) return;
     due = true;
-    requestAnimationFrame(() => { due = false; resize(); draw(); });
+    requestAnimationFrame(() => { due = false; fitCanvas(canvas); draw(); });
   }
-  function resize() {
-    const ratio = window.devicePixelRatio || 1, w = Math.max(2, Math.round(canvas.clientWidth * ratio)), h = Math.max(2, Math.round(canvas.clientHeight * ratio));
-    if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
-  }
-  const views = { iso: [0.62, 0.6], top: [0, Math.PI / 2], front: [0, 0], right: [Math.PI / 2, 0] };
   const self = {
     state, redraw,
-    look(name) { [state.yaw, state.pitch] = views[name]; redraw(); },
+    look(name) { [state.yaw, state.pitch] = kViews[name]; redraw(); },
     reset() { state.target = middle.slice(); state.zoom = 1; self.look("iso"); },
     color(mode) {
       const made = colorsOf(mesh, mode);
@@ -277,7 +249,7 @@ function makeView(canvas) {
     picture(name, width, height) {
       const kept = { ...state, target: state.target.slice() };
       Object.assign(state, { zoom: 1, target: middle.slice(), axis: -1, chosen: -1, spot: null });
-      [state.yaw, state.pitch] = views[name];
+      [state.yaw, state.pitch] = kViews[name];
       canvas.width = width; canvas.height = height;
       draw(width, height);
       const url = canvas.toDataURL("image/png");
@@ -296,17 +268,8 @@ function makeView(canvas) {
       }
       return best;
     },
-    drag(dx, dy, pans) {
-      if (pans) {
-        const [right, up] = frame(), step = span / (0.85 * state.zoom) / Math.min(canvas.clientWidth, canvas.clientHeight);
-        for (let i = 0; i < 3; ++i) state.target[i] += (-dx * right[i] + dy * up[i]) * step;
-      } else {
-        state.yaw -= dx * 0.008;
-        state.pitch = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, state.pitch + dy * 0.008));
-      }
-      redraw();
-    },
-    zoom(factor) { state.zoom = Math.min(400, Math.max(0.2, state.zoom * factor)); redraw(); },
+    drag(dx, dy, pans) { dragEye(state, data.lathe, canvas, dx, dy, pans); redraw(); },
+    zoom(factor) { zoomEye(state, factor); redraw(); },
   };
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   window.addEventListener("resize", redraw);

@@ -21,26 +21,17 @@ const kPart = [0.72, 0.75, 0.78, 1], kTool = { cutter: [0.93, 0.55, 0.2, 1], sha
   holder: [0.4, 0.44, 0.48, 1], spindle: [0.3, 0.33, 0.37, 0.9] };
 
 function makeView(canvas) {
-  const gl = canvas.getContext("webgl", { antialias: true, alpha: false });
-  if (!gl || !gl.getExtension("OES_element_index_uint")) return null;
-  const program = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) { console.error(gl.getProgramInfoLog(program)); return null; }
-  gl.useProgram(program);
-  const [aPlace, aNormal, aCut] = ["place", "normal", "cut"].map((name) => gl.getAttribLocation(program, name));
-  const [uView, uLow, uSize, uEye, uSun, uColor, uLit] = ["view", "low", "size", "eye", "sun", "color", "lit"].map((name) => gl.getUniformLocation(program, name));
-  for (const attribute of [aPlace, aNormal, aCut]) gl.enableVertexAttribArray(attribute);
+  // Smooth edges take four times the work: not where the processor has to do it, beside a machine perhaps.
+  const made = startDrawing(canvas, kVertex, kFragment, hasGraphicsCard());
+  if (!made || !made.gl.getExtension("OES_element_index_uint")) return null;
+  const { gl, attribute, uniform } = made;
+  const [aPlace, aNormal, aCut] = ["place", "normal", "cut"].map(attribute);
+  const [uView, uLow, uSize, uEye, uSun, uColor, uLit] = ["view", "low", "size", "eye", "sun", "color", "lit"].map(uniform);
+  for (const place of [aPlace, aNormal, aCut]) gl.enableVertexAttribArray(place);
   gl.enable(gl.DEPTH_TEST);
   const tiles = new Map();
   let tool = [], lines = null, lineCount = 0;
   const camera = { yaw: 0.62, pitch: 0.6, zoom: 1, target: [0, 0, 0], span: 1 };
-  const views = { iso: [0.62, 0.6], top: [0, Math.PI / 2], front: [0, 0], right: [Math.PI / 2, 0] };
 
   // Corners as packed_patch.h has them, 10 bytes each.
   function upload(corners, indices, isWide, low, size) {
@@ -64,20 +55,6 @@ function makeView(canvas) {
     gl.uniform4fv(uColor, color);
     gl.drawElements(gl.TRIANGLES, made.count, made.type, 0);
   }
-  // Rows of the eye's frame: right, up, towards the eye. A lathe's Z lies to the right, X up.
-  function frame() {
-    const [cy, sy, cp, sp] = [Math.cos(camera.yaw), Math.sin(camera.yaw), Math.cos(camera.pitch), Math.sin(camera.pitch)];
-    const rows = [[cy, sy, 0], [-sy * sp, cy * sp, cp], [sy * cp, -cy * cp, sp]];
-    return setup.turns ? rows.map((r) => [r[2], -r[1], r[0]]) : rows;
-  }
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  function matrix(width, height) {
-    const [right, up, eye] = frame(), scale = 1.7 / camera.span * camera.zoom, aspect = width / height;
-    const sx = aspect >= 1 ? scale / aspect : scale, sy = aspect >= 1 ? scale : scale * aspect, sz = -1 / (8 * camera.span);
-    return [right[0] * sx, up[0] * sy, eye[0] * sz, 0, right[1] * sx, up[1] * sy, eye[1] * sz, 0,
-      right[2] * sx, up[2] * sy, eye[2] * sz, 0,
-      -dot(right, camera.target) * sx, -dot(up, camera.target) * sy, -dot(eye, camera.target) * sz, 1];
-  }
   // Columns of the tool's frame; z is its axis.
   function moved(m, axis, tip) {
     const z = axis, side = Math.abs(z[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
@@ -91,13 +68,11 @@ function makeView(canvas) {
     return [out, [x, y, z]];
   }
   function draw() {
-    const ratio = window.devicePixelRatio || 1;
-    const width = Math.max(2, Math.round(canvas.clientWidth * ratio)), height = Math.max(2, Math.round(canvas.clientHeight * ratio));
-    if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
+    const [width, height] = fitCanvas(canvas);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0.914, 0.929, 0.941, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const m = matrix(width, height), rows = frame(), eye = rows[2];
+    const rows = eyeRows(camera, setup.turns), eye = rows[2], m = eyeMatrix(camera, rows, width, height, 8);
     // From above and the left of who looks, so that faces differ from every side.
     const sun = [0, 1, 2].map((i) => -0.45 * rows[0][i] + 0.75 * rows[1][i] + 0.5 * rows[2][i]);
     gl.uniformMatrix4fv(uView, false, m);
@@ -122,8 +97,8 @@ function makeView(canvas) {
       const [own, axes] = moved(m, state.axis || [0, 0, 1], state.tip_mm);
       gl.uniform1i(uLit, 1);
       gl.uniformMatrix4fv(uView, false, own);
-      gl.uniform3fv(uEye, axes.map((axis) => dot(axis, eye)));
-      gl.uniform3fv(uSun, axes.map((axis) => dot(axis, sun)));
+      gl.uniform3fv(uEye, axes.map((axis) => dotOf(axis, eye)));
+      gl.uniform3fv(uSun, axes.map((axis) => dotOf(axis, sun)));
       for (const piece of tool) paint(piece.mesh, piece.color);
     }
   }
@@ -212,18 +187,9 @@ function makeView(canvas) {
         if (plate.corners.length > 2) tool.push({ mesh: flat(plate), color: plate.is_holder ? kTool.holder : kTool.cutter });
     },
     reset(box) { camera.target = box[0].map((v, i) => (v + box[1][i]) / 2); camera.zoom = 1; this.look("iso"); },
-    look(name) { [camera.yaw, camera.pitch] = views[name]; redraw(); },
-    drag(dx, dy, pans) {
-      if (pans) {
-        const [right, up] = frame(), step = 2 * camera.span / 1.7 / camera.zoom / Math.min(canvas.clientWidth, canvas.clientHeight);
-        for (let i = 0; i < 3; ++i) camera.target[i] += (up[i] * dy - right[i] * dx) * step;
-      } else {
-        camera.yaw += 0.008 * dx;
-        camera.pitch = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, camera.pitch + 0.008 * dy));
-      }
-      redraw();
-    },
-    zoom(factor) { camera.zoom = Math.max(0.2, Math.min(200, camera.zoom * factor)); redraw(); },
+    look(name) { [camera.yaw, camera.pitch] = kViews[name]; redraw(); },
+    drag(dx, dy, pans) { dragEye(camera, setup.turns, canvas, dx, dy, pans); redraw(); },
+    zoom(factor) { zoomEye(camera, factor); redraw(); },
   };
 }
 
@@ -252,6 +218,24 @@ window.addEventListener("hashchange", () => { token = decodeURIComponent(locatio
 const item = (name, text, kind) => { const made = document.createElement(name); made.textContent = text; if (kind) made.className = kind; return made; };
 const ageText = (s) => s < 1 ? `${Math.round(1000 * s)} ms` : s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)} min ${String(Math.floor(s % 60)).padStart(2, "0")} s`;
 
+// What stands there already is not laid out again, ten times a second.
+function setText(place, text) { if (place.textContent !== String(text)) place.textContent = text; }
+function showRows(list, rows) {
+  if (list.children.length !== 2 * rows.length) list.replaceChildren(...rows.flatMap(() => [item("dt", ""), item("dd", "")]));
+  rows.flat().forEach((text, k) => setText(list.children[k], text));
+}
+let shownCode = "";
+function showCode(line, code) {
+  const text = JSON.stringify([line, code]);
+  if (text === shownCode) return;
+  shownCode = text;
+  by("code").replaceChildren(...code.map(([number, words]) => {
+    const made = item("li", "", number === line ? "now" : "");
+    made.append(item("span", number), words);
+    return made;
+  }));
+}
+
 function showState() {
   const badge = by("state"), isCut = failures > 1 || (state && performance.now() - received > 4000);
   document.body.classList.toggle("old", isCut || (state !== null && (state.state === "stale" || state.state === "lost")));
@@ -270,14 +254,10 @@ function showNews(news) {
     if (view && news.box) view.setUp(news.box);
     if (view) view.setTool(news.tool_shape);
   }
-  by("rows").replaceChildren(...news.rows.flatMap(([name, value]) => [item("dt", name), item("dd", value)]));
-  by("code").replaceChildren(...news.code.map(([line, text]) => {
-    const made = item("li", "", line === news.line ? "now" : "");
-    made.append(item("span", line), text);
-    return made;
-  }));
+  showRows(by("rows"), news.rows);
+  showCode(news.line, news.code);
   by("alarm").hidden = !news.notice;
-  by("alarm").textContent = news.notice || "";
+  setText(by("alarm"), news.notice || "");
   by("alarm").className = news.is_alarm ? "" : "warning";
   while (by("findings").children.length > news.findings_from) by("findings").lastChild.remove();
   for (const finding of news.findings) {
@@ -286,9 +266,9 @@ function showNews(news) {
     by("findings").append(made);
   }
   const listed = by("findings").children.length;
-  by("counts").textContent = news.findings_count ? news.findings_count : news.state === "ended" ? texts.none : texts.no_findings;
+  setText(by("counts"), news.findings_count || (news.state === "ended" ? texts.none : texts.no_findings));
   by("more").hidden = news.findings_count <= listed;
-  by("more").textContent = fill(texts.more_findings, news.findings_count - listed);
+  setText(by("more"), fill(texts.more_findings, news.findings_count - listed));
 }
 
 // ---- asking
