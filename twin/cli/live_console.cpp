@@ -40,13 +40,13 @@ std::string status_line(const LiveStatus& status) {
     out += trf("  no position of {}", place.missing_axes);
   }
   if (place.tool >= 0) out += fmt::format("  T{}", place.tool);
-  if (place.followed) {
+  if (place.has_program_place()) {
     out += fmt::format("  {}:{}", std::filesystem::path(status.file).filename().string(),
                        place.source.line);
   } else if (status.off_path_mm > 0) {
     out += trf("  {:.2f} mm off the path", status.off_path_mm);
   }
-  if (place.followed && status.remaining_s >= 0) {
+  if (place.has_program_place() && status.remaining_s >= 0) {
     out += trf("  {} left", time_left_text(status.remaining_s));
   }
   if (status.load) out += trf("  load {}", text_of(*status.load));

@@ -197,10 +197,12 @@ void LiveCutter::show(const Reading& now, const PathMatch& point) {
   place_.tool = now.tool >= 0 ? now.tool : point.on_path ? point.tool : matcher_.program_tool();
   place_.followed = point.on_path;
   place_.distance_mm = point.distance_mm;
-  if (!point.on_path) return;
-  if (first_line_ == 0) first_line_ = point.source.line;
+  place_.in_corner = point.corner == RoundedCorner::kRight;
+  if (!place_.has_program_place()) return;
   place_.source = point.source;
   place_.program_s = point.program_s;
+  if (!point.on_path) return;
+  if (first_line_ == 0) first_line_ = point.source.line;
   matcher_.note_program_tool(point);
   ++facts_.on_path;
   facts_.following_max_mm = std::max(facts_.following_max_mm, point.distance_mm);

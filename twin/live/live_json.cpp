@@ -43,7 +43,7 @@ std::string line_of(const Json& json) {
 
 std::string status_json(const LiveStatus& status, const EventHead& head) {
   const ToolState& place = status.place;
-  const bool followed = place.followed;
+  const bool placed = place.has_program_place();
   Json out = event("status", head);
   out["state"] = to_string(status.state);
   out["age_ms"] = rounded(status.age_s * 1e3);
@@ -56,12 +56,12 @@ std::string status_json(const LiveStatus& status, const EventHead& head) {
   out["dropped"] = status.dropped;
   out["tip_mm"] = place.known ? vector_json(place.tip_mm) : Json(nullptr);
   out["tool"] = place.tool >= 0 ? Json(place.tool) : Json(nullptr);
-  out["on_path"] = followed;
+  out["on_path"] = place.followed;
   out["distance_mm"] = known(place.distance_mm, place.known);
-  out["file"] = followed ? Json(status.file) : Json(nullptr);
-  out["line"] = followed ? Json(place.source.line) : Json(nullptr);
-  out["program_s"] = known(place.program_s, followed);
-  out["remaining_s"] = known(status.remaining_s, followed && status.remaining_s >= 0);
+  out["file"] = placed ? Json(status.file) : Json(nullptr);
+  out["line"] = placed ? Json(place.source.line) : Json(nullptr);
+  out["program_s"] = known(place.program_s, placed);
+  out["remaining_s"] = known(status.remaining_s, placed && status.remaining_s >= 0);
   out["removed_mm3"] = rounded(status.removed_mm3);
   out["load"] = load_json(status.load);
   out["collision_in_s"] = known(status.collision_in_s, status.collision_in_s >= 0);

@@ -212,6 +212,20 @@ void PathFollower::note_hidden(double latest_s, const Candidate& at) {
   seen_s_ = 0;
 }
 
+/// At either end of the piece that is nearest.
+RoundedCorner PathFollower::corner_at(const Candidate& at, const MatchQuery& place) const {
+  RoundedCorner found = RoundedCorner::kNone;
+  for (std::size_t i = at.piece == 0 ? 1 : at.piece; i <= at.piece + 1 && i < pieces_.size(); ++i) {
+    const Motion& before = pieces_[i - 1].motion;
+    const Vec3 tip_mm = place_on(before, place).tip_mm;
+    const RoundedCorner corner =
+        rounded_corner(before, pieces_[i].motion, tip_mm, at.distance_mm, options_.tolerance_mm);
+    if (corner == RoundedCorner::kRight) return corner;
+    if (found == RoundedCorner::kNone) found = corner;
+  }
+  return found;
+}
+
 void PathFollower::drive_to(const Candidate& to, const Drive& drive) {
   for (std::size_t i = 0; i < to.piece; ++i) {
     const Piece& piece = pieces_.front();
@@ -278,7 +292,10 @@ PathMatch PathFollower::follow(const MatchQuery& place, const Drive& drive) {
   point.program_s = piece.time_at(at->t);
   point.motion = piece.number;
   point.share = at->t;
-  if (at->distance_mm > options_.tolerance_mm) return point;
+  if (at->distance_mm > options_.tolerance_mm) {
+    point.corner = corner_at(*at, place);
+    return point;
+  }
   point.on_path = true;
   if (point.in_reach) note_hidden(end.latest_s, *at);
   found_ = true;

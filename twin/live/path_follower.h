@@ -12,6 +12,7 @@
 #include <span>
 
 #include "interp_bridge/motion.h"
+#include "twin/live/rounded_corner.h"
 #include "twin/machine/kinematics/machine_kinematics.h"
 #include "twin/machine/timeline.h"
 #include "twin/motion/motion_nearest.h"
@@ -71,7 +72,8 @@ std::array<double, 3> nearest_turns(const std::array<double, 3>& abc_deg,
 /// Where the tip was found.
 struct PathMatch {
   bool on_path = false;
-  bool in_reach = false;   ///< as far on as the machine can have come; else by its line alone
+  bool in_reach = false;  ///< as far on as the machine can have come; else by its line alone
+  RoundedCorner corner = RoundedCorner::kNone;  ///< of a tip that is not on the path
   double distance_mm = 0;  ///< from the path; of a tip that is not on it: from the nearest point of
                            ///< the part that was searched; infinite: there is no path to search
   ProgramPose place;       ///< on the path
@@ -183,6 +185,7 @@ class PathFollower {
   bool has_line(int line) const;
   std::optional<Candidate> search(const MatchQuery& place, const Reach& reach, int line,
                                   int tool) const;
+  RoundedCorner corner_at(const Candidate& at, const MatchQuery& place) const;
   void drive_to(const Candidate& to, const Drive& drive);
 
   FollowOptions options_;

@@ -16,6 +16,8 @@ namespace {
 constexpr double kNeverSeen_s = 1.0;
 /// A machine that has gone so far along its path goes on in its program. mm.
 constexpr double kGoesOn_mm = 2.0;
+/// A machine that rounds a corner is through by then; one that still is beside its path is off it.
+constexpr double kMostInCorner_s = 1.0;
 
 }  // namespace
 
@@ -66,6 +68,8 @@ void PathWatch::note_off_path(const Reading& now, const PathMatch& point, double
   const bool searched = std::isfinite(point.distance_mm);
   const bool by_hand = is_by_hand(now.sample, point);
   const PathFollower& follower = matcher_.follower();
+  in_corner_s_ = point.corner == RoundedCorner::kRight ? in_corner_s_ + elapsed_s : 0;
+  if (in_corner_s_ > 0 && in_corner_s_ <= kMostInCorner_s && !off_path_event_) return;
   if (point.on_path || !searched || by_hand || follower.passed_all() || matcher_.finished()) {
     off_path_event_.reset();
     lost_sight_s_ = 0;
@@ -89,6 +93,11 @@ void PathWatch::note_off_path(const Reading& now, const PathMatch& point, double
     finding.text =
         trf("the tip is not on the path of the program, it is beside it by X{:.3f} Y{:.3f} Z{:.3f}",
             by.x, by.y, by.z);
+    if (point.corner == RoundedCorner::kByFeeds) {
+      finding.hint =
+          tr("G64 without P rounds corners as far as the machine's accelerations want: with --ini "
+             "they are in the path, and G64 P says how far");
+    }
     off_path_event_ = log_.add(std::move(finding));
   }
   log_.deepen(*off_path_event_, point.distance_mm);

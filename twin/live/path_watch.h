@@ -54,6 +54,7 @@ class PathWatch {
   std::optional<double> stood_mm_;  ///< having gone so far along its path
   double lost_sight_s_ = 0;
   double foreign_s_ = 0;  ///< the machine has cut, and never been on the path, for so long
+  double in_corner_s_ = 0;
   bool foreign_told_ = false;
   bool mismatch_told_ = false;
   double mismatch_mm_ = 0;  ///< driven along the path with another tool than the program's

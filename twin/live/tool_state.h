@@ -29,11 +29,14 @@ struct ToolState {
   int tool = -1;
   double tool_length_mm = 0;  ///< in force: from the tip to the spindle's nose
   bool followed = false;      ///< there is a program, and the tip is on its path
+  bool in_corner = false;     ///< it is beside it, where the program lets a corner be rounded
   bool off_path = false;      ///< it should be, and is not
   double distance_mm = 0;     ///< from the path, if there is one
   SourceRef source;           ///< of the program's motion there
   double program_s = 0;       ///< program time, by the plan
   std::string missing_axes;   ///< why it is not known
+  /// `source` and `program_s` are those of where it is now.
+  bool has_program_place() const { return followed || in_corner; }
 };
 
 }  // namespace kerf

@@ -431,7 +431,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   if (status.state == LiveState::kEnded) moment->state = PlayState::kEnded;
   moment->source = freshness_of(status.state);
   moment->source_age_s = status.age_s + seconds(Clock::now() - status_at_);
-  moment->time_s = program_ && place.followed ? place.program_s : status.t_s;
+  moment->time_s = program_ && place.has_program_place() ? place.program_s : status.t_s;
   moment->line = static_cast<int>(place.source.line);
   moment->file = static_cast<int>(place.source.file);
   moment->past_vertices =
@@ -443,7 +443,7 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   moment->removed_mm3 = status.removed_mm3;
   moment->measured_mm_per_min = status.feed_mm_per_min;
   if (status.load) moment->spindle_load = text_of(*status.load);
-  if (program_ && place.followed && !program_->track->empty()) {
+  if (program_ && place.has_program_place() && !program_->track->empty()) {
     const TrackPosition at = program_->track->place_at(place.program_s);
     set_feed(program_->track->motion(std::min(at.motion, program_->track->size() - 1)),
              moment.get());

@@ -89,12 +89,12 @@ ShopMoment moment_of(const LiveStatus& status, const std::string& tool_name, Len
   const auto add = [&](const std::string& name, const std::string& value) {
     out.rows.emplace_back(name, value);
   };
-  if (place.followed) {
+  if (place.has_program_place()) {
     out.file = status.file;
     out.line = static_cast<int>(place.source.line);
     add(tr("Program"), line_text(out.file, out.line));
   }
-  if (place.followed && status.remaining_s >= 0)
+  if (place.has_program_place() && status.remaining_s >= 0)
     add(tr("Time left"), time_left_text(status.remaining_s));
   if (place.known) {
     out.tip_mm = place.tip_mm;
