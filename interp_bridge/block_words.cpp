@@ -5,7 +5,9 @@
 #include <cstring>
 #include <optional>
 
+#include "base/newline_count.h"
 #include "base/text_scan.h"
+#include "interp_bridge/special_words.h"
 #include "interp_bridge/word_scanner.h"
 
 namespace kerf {
@@ -75,28 +77,6 @@ void take_g(int code, BlockWords& words, Codes& codes) {
 bool is_special(const BlockWords& words) {
   return words.place != BlockWords::Place::kProgram || words.offset != BlockWords::Offset::kNone ||
          words.store != BlockWords::Store::kNone;
-}
-
-/// False: the line has no G10, G28, G30, G53, G92 and no M6. Most lines, so it is to be quick.
-bool may_be_special(std::string_view line) {
-  const char* const end = line.data() + line.size();
-  for (const char* p = line.data(); p != end; ++p) {
-    const char letter = to_lower(*p);
-    if (letter != 'g' && letter != 'm') continue;
-    const char* at = p + 1;
-    while (at != end && (is_line_blank(*at) || *at == '0')) ++at;
-    if (at == end) return false;
-    if (letter == 'm') {
-      if (*at == '6') return true;
-      continue;
-    }
-    if (*at == '1' || *at == '2' || *at == '3' || *at == '5' || *at == '9') {
-      ++at;
-      while (at != end && is_line_blank(*at)) ++at;
-      if (at != end && is_digit(*at)) return true;
-    }
-  }
-  return false;
 }
 
 /// Whether such a block calls others: M98, O.. CALL.
@@ -186,6 +166,7 @@ struct BlockReader::File {
   std::uint32_t line = 0;
 
   void look_through();
+  void look_through(std::string_view text);
   void look_at(std::string_view text);
   void rewind();
   bool find(std::uint32_t wanted, std::string_view& text);
@@ -204,15 +185,29 @@ void BlockReader::File::look_through() {
   TextPieces whole(path);
   std::string_view text;
   line = kFirstLine;
-  while (whole.next(text)) {
-    while (!text.empty()) {
-      look_at(take_line(text));
-      ++line;
-    }
-  }
+  while (whole.next(text)) look_through(text);
   readable = whole.error().empty();
   if (!readable) named = kAllThree;
   line = 0;
+}
+
+/// From one line that may tell something to the next, once the axes that it names are known.
+void BlockReader::File::look_through(std::string_view text) {
+  while (!text.empty()) {
+    if (named == kAllThree) {
+      const std::size_t found = find_special(text);
+      if (found == text.npos) {
+        line += static_cast<std::uint32_t>(newline_count(text));
+        return;
+      }
+      const std::size_t before = text.substr(0, found).rfind('\n');
+      const std::size_t begin = before == text.npos ? 0 : before + 1;
+      line += static_cast<std::uint32_t>(newline_count(text.substr(0, begin)));
+      text.remove_prefix(begin);
+    }
+    look_at(take_line(text));
+    ++line;
+  }
 }
 
 void BlockReader::File::rewind() {

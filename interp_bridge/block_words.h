@@ -58,7 +58,7 @@ bool may_store(std::string_view line);
 bool stores(const BlockWords& words);
 
 /// The words of the blocks that motions come from, read from the files as they are needed. A file
-/// is looked through once (31 MB: 0.1 s); what is kept of it are the lines that have to do with
+/// is looked through once (31 MB: 0.01 s); what is kept of it are the lines that have to do with
 /// the machine's own coordinates or with offsets.
 class BlockReader {
  public:
