@@ -80,9 +80,10 @@ void MotionFeeder::start_fold() {
   constexpr std::uint8_t kButZ = 3;
   constexpr std::uint8_t kButY = 5;
   const std::uint8_t named = blocks_.named_in(summary_.files[0]);
-  const auto axes = static_cast<std::uint8_t>(named & (places.z_matters ? kAll : kButZ) &
-                                              (places.y_matters ? kAll : kButY));
-  fold_.start_unknown(places.interpreter_start, axes, places.zero_known ? kAll : 0);
+  const auto matters = static_cast<std::uint8_t>((places.z_matters ? kAll : kButZ) &
+                                                 (places.y_matters ? kAll : kButY));
+  fold_.start_unknown(places.interpreter_start, named & matters, places.zero_known ? kAll : 0,
+                      matters);
 }
 
 /// Of what moves or shifts the words of its block are looked up.

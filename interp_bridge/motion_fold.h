@@ -106,9 +106,10 @@ class MotionFold {
   /// (cycles), and after a G92 or G10 L20 that names it. In G91 it stays as it was. After G53, G28
   /// and G30 the axes that they move are unknown, unless the axis is of `zero_known`, which says
   /// that the work offset of the listing is the true one, or the program has set it by G10 L2.
-  /// G91 is known by the interpreter's comments, the rest by set_block().
+  /// G91 is known by the interpreter's comments, the rest by set_block(). An axis that is not of
+  /// `matters` counts as known wherever the machine goes: it has none, or nothing is cut by it.
   void start_unknown(const std::array<double, 9>& machine_position, std::uint8_t axes,
-                     std::uint8_t zero_known);
+                     std::uint8_t zero_known, std::uint8_t matters = 7);
   /// The block of the commands that follow; null: not known, as that of a listing. Outlives them.
   void set_block(const BlockWords* block) { block_ = block; }
   /// Ahead of a block of which no command may come (stores()): G28.1 and G30.1 keep the place where
@@ -315,12 +316,13 @@ class MotionFold {
   bool follows_places_ = false;
   bool incremental_ = false;  ///< G91
   const BlockWords* block_ = nullptr;
-  int unsaid_ = 0;               ///< amounts that nobody has said, so far
-  Unknowns place_{};             ///< where the machine stands
-  Unknowns work_place_{};        ///< the workpiece frame, of axes that are placed_
-  Unknowns machine_place_{};     ///< the machine's zero, of axes whose zero_known_ is not set
-  Unknowns shift_{};             ///< what the last G92 adds
-  Unknowns in_force_{};          ///< the offsets in force
+  int unsaid_ = 0;            ///< amounts that nobody has said, so far
+  Unknowns place_{};          ///< where the machine stands
+  Unknowns work_place_{};     ///< the workpiece frame, of axes that are placed_
+  Unknowns machine_place_{};  ///< the machine's zero, of axes whose zero_known_ is not set
+  Unknowns shift_{};          ///< what the last G92 adds
+  Unknowns in_force_{};       ///< the offsets in force
+  std::uint8_t matters_ = 7;
   std::uint8_t unknown_ = 0;     ///< where the machine stands is not known in the workpiece frame
   std::uint8_t unrelated_ = 0;   ///< nor is it what a number of the program means there
   std::uint8_t placed_ = 0;      ///< at least once

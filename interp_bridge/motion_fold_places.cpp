@@ -37,9 +37,10 @@ bool agrees(Speed said, MotionKind kind) {
 }  // namespace
 
 void MotionFold::start_unknown(const std::array<double, 9>& machine_position, std::uint8_t axes,
-                               std::uint8_t zero_known) {
+                               std::uint8_t zero_known, std::uint8_t matters) {
   stands_at_ = machine_position;
   follows_places_ = true;
+  matters_ = matters;
   placed_ = without(kXyz, axes);
   zero_known_ = zero_known;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -108,6 +109,8 @@ void MotionFold::settle() {
     if (!placed || place_[i] != work_place_[i]) unknown_ |= bit;
     if (placed && in_force_[i] != work_place_[i]) unrelated_ |= bit;
   }
+  unknown_ &= matters_;
+  unrelated_ &= matters_;
 }
 
 /// The axis stands at such a place now. The first one of which something is known is what the

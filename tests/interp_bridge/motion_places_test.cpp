@@ -100,6 +100,17 @@ TEST_F(Places, ReferenceGoesByWayOfAKnownPlace) {
   EXPECT_EQ(motions_.back().unknown_to, kXyz);
 }
 
+/// A lathe has no Y.
+TEST_F(Places, AnAxisThatDoesNotMatterIsKnownEverywhere) {
+  fold_.start_unknown({}, 5, 0, 5);
+  EXPECT_EQ(run("G30", {"STRAIGHT_TRAVERSE(0.0, 0.0, 0.0, 0, 0, 0)",
+                        "STRAIGHT_TRAVERSE(3.0, 4.0, 5.0, 0, 0, 0)"})
+                .unknown_to,
+            5);
+  EXPECT_EQ(run("G0 X1", {"STRAIGHT_TRAVERSE(1.0, 4.0, 5.0, 0, 0, 0)"}).unknown_to, 4);
+  EXPECT_EQ(run("G0 Z1", {"STRAIGHT_TRAVERSE(1.0, 4.0, 1.0, 0, 0, 0)"}).unknown_to, 0);
+}
+
 TEST_F(PlacesWithOffset, MachinePlacesAreKnown) {
   run("", {"SET_G5X_OFFSET(1, 10, 20, -50, 0, 0, 0)"});
   const Motion up = run("G53 G0 Z0", {"STRAIGHT_TRAVERSE(-10, -20, 50, 0, 0, 0)"});

@@ -146,7 +146,8 @@ std::optional<Finding> nothing_cut(const CutFacts& facts) {
         "{}; is the blank given in the coordinates that the program writes?",
         extent(facts.feed_mm), extent(facts.blank_mm));
   } else if (!facts.came_near) {
-    return std::nullopt;  // feed moves from nowhere known, which do not cut
+    finding.severity = Severity::kWarning;
+    finding.text = tr("nothing is cut: nothing has said where the feed moves are");
   } else {
     finding.text =
         facts.blank == BlankKind::kSaved

@@ -228,8 +228,9 @@ void TurningStage::take_traverse(const Motion& m, const TimedStep& step) {
 }
 
 void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
-  if (stands_still(m)) return;
+  if (m.start_known && stands_still(m)) return;
   ++feed_moves_;
+  feeds_placed_ = feeds_placed_ || m.start_known;
   if (!mount_for(m)) {
     report_undefined(m, step);
     return;
@@ -559,11 +560,16 @@ void TurningStage::report_nothing_cut() {
   Finding finding;
   finding.id = FindingId::kNothingCut;
   finding.severity =
-      site_.blank == BlankKind::kGiven && feed_moves_ > 0 ? Severity::kError : Severity::kWarning;
-  finding.text = feed_moves_ == 0
-                     ? std::string(tr("nothing is cut: the program has no feed move"))
-                     : std::string(tr("nothing is cut: no feed move touches the workpiece; is the "
-                                      "blank given in the coordinates that the program writes?"));
+      site_.blank == BlankKind::kGiven && feeds_placed_ ? Severity::kError : Severity::kWarning;
+  if (feed_moves_ == 0) {
+    finding.text = tr("nothing is cut: the program has no feed move");
+  } else if (!feeds_placed_) {
+    finding.text = tr("nothing is cut: nothing has said where the feed moves are");
+  } else {
+    finding.text =
+        tr("nothing is cut: no feed move touches the workpiece; is the blank given in the "
+           "coordinates that the program writes?");
+  }
   log_.add(std::move(finding));
 }
 

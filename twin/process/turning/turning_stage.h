@@ -114,6 +114,7 @@ class TurningStage final : public Process {
   int spindle_tool_ = 0;
   std::uint64_t next_id_ = 0;
   std::uint64_t feed_moves_ = 0;
+  bool feeds_placed_ = false;  ///< of one it was known where it goes
   bool undefined_ = false;
   bool mill_turn_told_ = false;
   bool unmilled_told_ = false;
