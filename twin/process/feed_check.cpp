@@ -1,5 +1,7 @@
 #include "twin/process/feed_check.h"
 
+#include <cmath>
+
 #include "base/translate.h"
 #include "twin/process/finding_at.h"
 
@@ -13,7 +15,9 @@ constexpr double kOverFeed = 1.01;
 
 void FeedCheck::note(const Motion& m, const TimedStep& step) {
   if (step.length_mm <= 0) return;
-  if (step.programmed_mm_per_min <= 0) {
+  if (m.kind == MotionKind::kThread) {
+    check_thread(m, step);
+  } else if (step.programmed_mm_per_min <= 0) {
     tell_missing(m, step);
   } else if (step.programmed_mm_per_min > kOverFeed * step.allowed_mm_per_min) {
     if (over_.count++ > 0) return;
@@ -27,6 +31,28 @@ void FeedCheck::tell_missing(const Motion& m, const TimedStep& step) {
   finding.text =
       tr("feed move without a feed rate (or without spindle speed under G95); it takes no time in "
          "this report");
+  log_.add(std::move(finding));
+}
+
+/// Of G33, G76 and G33.1. A block of several passes is told once.
+void FeedCheck::check_thread(const Motion& m, const TimedStep& step) {
+  constexpr double kSlack = 1 + 1e-6;
+  if (m.source == thread_told_ || step.allowed_mm_per_min <= 0 ||
+      step.programmed_mm_per_min <= step.allowed_mm_per_min * kSlack) {
+    return;
+  }
+  thread_told_ = m.source;
+  Finding finding = finding_at(FindingId::kThreadSpeed,
+                               limits_known_ ? Severity::kError : Severity::kWarning, m, step);
+  finding.tool = m.tool;
+  finding.text =
+      trf("the thread's {:g} mm a turn at {:.0f} rpm ask for {:.0f} mm/min, and the axes do "
+          "{:.0f}: they "
+          "cannot follow the spindle{}",
+          m.feed_mm_per_min, m.spindle_rpm, step.programmed_mm_per_min, step.allowed_mm_per_min,
+          limits_known_ ? "" : tr(" (of an assumed machine)"));
+  finding.hint = trf("at most S{:.0f}", std::floor(m.spindle_rpm * step.allowed_mm_per_min /
+                                                   step.programmed_mm_per_min));
   log_.add(std::move(finding));
 }
 

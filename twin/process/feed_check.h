@@ -11,7 +11,7 @@
 
 namespace kerf {
 
-/// feed-missing and over-feed. One thread.
+/// feed-missing, over-feed and, of threads, thread-speed. One thread.
 class FeedCheck {
  public:
   /// `limits_known`, `origin`: those of the user's machine, and where they come from.
@@ -24,6 +24,7 @@ class FeedCheck {
   void report();
   void forget() {
     missing_told_ = false;
+    thread_told_ = {};
     over_ = {};
   }
 
@@ -37,11 +38,13 @@ class FeedCheck {
     double allowed_mm_per_min = 0;
   };
   void tell_missing(const Motion& motion, const TimedStep& step);
+  void check_thread(const Motion& motion, const TimedStep& step);
 
   bool limits_known_;
   std::string origin_;
   FindingLog& log_;
   bool missing_told_ = false;
+  SourceRef thread_told_;
   OverFeed over_;
 };
 

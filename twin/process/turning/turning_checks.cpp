@@ -293,28 +293,6 @@ void TurningChecks::check_plane(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
-void TurningChecks::check_thread(const Motion& m, const TimedStep& step, bool limits_known) {
-  if (m.kind != MotionKind::kThread || m.source == thread_told_) return;
-  constexpr double kSlack = 1 + 1e-6;
-  if (step.allowed_mm_per_min <= 0 ||
-      step.programmed_mm_per_min <= step.allowed_mm_per_min * kSlack) {
-    return;
-  }
-  thread_told_ = m.source;
-  Finding finding = finding_at(FindingId::kThreadSpeed,
-                               limits_known ? Severity::kError : Severity::kWarning, m, step);
-  finding.tool = m.tool;
-  finding.text =
-      trf("the thread's {:g} mm a turn at {:.0f} rpm ask for {:.0f} mm/min, and the axes do "
-          "{:.0f}: they "
-          "cannot follow the spindle{}",
-          m.feed_mm_per_min, m.spindle_rpm, step.programmed_mm_per_min, step.allowed_mm_per_min,
-          limits_known ? "" : tr(" (of an assumed machine)"));
-  finding.hint = trf("at most S{:.0f}", std::floor(m.spindle_rpm * step.allowed_mm_per_min /
-                                                   step.programmed_mm_per_min));
-  log_.add(std::move(finding));
-}
-
 void TurningChecks::end_tool() {
   rapid_.reset();
   standing_.reset();
@@ -331,7 +309,6 @@ void TurningChecks::forget() {
   end_tool();
   faces_.clear();
   plane_told_ = false;
-  thread_told_ = {};
 }
 
 }  // namespace kerf

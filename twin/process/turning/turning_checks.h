@@ -69,8 +69,6 @@ class TurningChecks {
   void check_centre(const TurnedMove& move, const TurnCut& cut);
   /// wrong-plane: once.
   void check_plane(const Motion& motion, const TimedStep& step);
-  /// thread-speed: once a line. `limits_known`: they are those of the user's machine.
-  void check_thread(const Motion& motion, const TimedStep& step, bool limits_known);
   void end_tool();
   /// The program is over: pip-left.
   void finish();
@@ -112,7 +110,6 @@ class TurningChecks {
   std::optional<FindingLog::Handle> rapid_, standing_, flank_;
   bool centre_told_ = false;
   bool plane_told_ = false;
-  SourceRef thread_told_;
   std::vector<Face> faces_;  ///< the last of each place, few
 };
 

@@ -238,7 +238,7 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
   uses_[use_].feed_mm += step.length_mm;
   if (!m.start_known) return;
   if (!site_.watched) changes_.feeds(m, step, mounted_->number);
-  if (m.kind != MotionKind::kThread) site_.feeds.note(m, step);
+  if (m.kind != MotionKind::kThread || !is_driven()) site_.feeds.note(m, step);
   if (report_unmilled(m, step)) return;
   if (!is_driven()) {
     report_mill_turn(m, step);
@@ -257,7 +257,6 @@ void TurningStage::take_feed(const Motion& m, const TimedStep& step) {
     return;
   }
   if (!is_driven()) {
-    checks_.check_thread(m, step, site_.limits_known);
     threads_.note(move);
     stops_.check_drill(move);
     depths_.note(move);
