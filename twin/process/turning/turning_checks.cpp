@@ -150,6 +150,8 @@ void TurningChecks::check_traverse(const TurnedMove& move, bool behind_feed) {
     const bool drags = behind_feed && touch->by_edges &&
                        touch->share * move.step.length_mm < kAtOnce_mm &&
                        touch->depth_mm <= kSliver_mm;
+    std::optional<FindingLog::Handle>& of_block = of_block_[drags ? 1 : 0];
+    if (of_block) return log_.deepen(*of_block, touch->depth_mm);
     Finding finding =
         finding_of(FindingId::kRapidContact, move, touch->share,
                    drags ? tr("traverse drags along the shoulder that the feed before "
@@ -160,7 +162,7 @@ void TurningChecks::check_traverse(const TurnedMove& move, bool behind_feed) {
       finding.hint = tr("a feed along the shoulder first, or away from it along X and Z at once");
     }
     finding.bodies = {to_string(ToolPart::kCutter), kWorkpieceBody};
-    rapid_ = log_.add(std::move(finding));
+    rapid_ = of_block = log_.add(std::move(finding));
   }
   log_.deepen(*rapid_, touch->depth_mm);
 }
@@ -293,8 +295,15 @@ void TurningChecks::check_plane(const Motion& m, const TimedStep& step) {
   log_.add(std::move(finding));
 }
 
+void TurningChecks::note_block(const SourceRef& source) {
+  if (source == block_) return;
+  block_ = source;
+  of_block_ = {};
+}
+
 void TurningChecks::end_tool() {
   rapid_.reset();
+  of_block_ = {};
   standing_.reset();
   flank_.reset();
   centre_told_ = false;

@@ -2,6 +2,7 @@
 // events: one finding from the first move that shows a trouble to the last one in a row.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,6 +60,8 @@ class TurningChecks {
   /// there (kSliver_mm) is a warning.
   void check_traverse(const TurnedMove& move, bool behind_feed);
   void clear_traverse() { rapid_.reset(); }
+  /// Of every motion, ahead of its checks. What traverses of one block touch is one event.
+  void note_block(const SourceRef& source);
   /// spindle-off-contact. An event lasts until the spindle turns or the tool changes.
   void check_standing(const TurnedMove& move);
   void end_standing() { standing_.reset(); }
@@ -108,6 +111,9 @@ class TurningChecks {
   FindingLog& log_;
   CheckOptions options_;
   std::optional<FindingLog::Handle> rapid_, standing_, flank_;
+  /// What traverses of one block touch, as those of all passes of G76; and where they only drag.
+  std::array<std::optional<FindingLog::Handle>, 2> of_block_;
+  SourceRef block_;
   bool centre_told_ = false;
   bool plane_told_ = false;
   std::vector<Face> faces_;  ///< the last of each place, few

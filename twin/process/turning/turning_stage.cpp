@@ -109,6 +109,7 @@ void TurningStage::finish(bool whole) {
 
 void TurningStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   path_ = path;
+  checks_.note_block(m.source);
   tap_lead_mm_ = site_.watched ? 0 : floating_.lead_mm(m);
   if (!site_.watched && cutter()) stops_.check_stop(m, step, *edges_, mounted_->number);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
