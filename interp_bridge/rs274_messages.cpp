@@ -70,6 +70,28 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
+/// Where the number of the block's word begins, outside of its comments; npos: it has none.
+std::size_t find_word(std::string_view block, char letter) {
+  bool in_comment = false;
+  for (std::size_t i = 0; i < block.size() && (in_comment || block[i] != ';'); ++i) {
+    if (block[i] == '(' || block[i] == ')') in_comment = block[i] == '(';
+    if (in_comment || to_lower(block[i]) != letter) continue;
+    return std::min(block.find_first_not_of(" \t", i + 1), block.size());
+  }
+  return block.npos;
+}
+
+/// An arc as some write it, with all three words of its centre: G2 X10 Y0 I5 J0 K0.
+bool has_idle_k(std::string_view block) {
+  const std::size_t at = find_word(block, 'k');
+  if (at == block.npos) return false;
+  double k = 1;
+  const std::size_t sign = at < block.size() && block[at] == '+' ? 1 : 0;
+  std::from_chars(block.data() + at + sign, block.data() + block.size(), k);
+  const auto has = [&](char letter) { return find_word(block, letter) != block.npos; };
+  return k == 0 && (has('j') || has('y') || !has('z'));
+}
+
 /// A block has a G code, outside of its comments: "G0 G91 G28 Z0" has G28.
 bool has_g_code(std::string_view block, int code) {
   bool in_comment = false;
@@ -141,7 +163,11 @@ std::string hint_for(const std::string& message, std::string_view block) {
   if (has("Radius to end of arc differs") && fits_absolute_centre(message)) {
     return tr("as a place, and not from the arc's start, the centre fits: G90.1 says so");
   }
-  if (has("K word given for arc in xy plane")) return tr("an arc of X and Z lies in G18");
+  if (has("K word given for arc in xy plane")) {
+    return has_idle_k(block)
+               ? tr("an arc of X and Y has no K, not even one of 0: leave the word out")
+               : tr("an arc of X and Z lies in G18");
+  }
   if (has("P word with no") && (has_g_code(block, 73) || has_g_code(block, 81) ||
                                 has_g_code(block, 83) || has_g_code(block, 85))) {
     return tr("LinuxCNC dwells at the bottom of G82, G86, G88 and G89 only: no P here");

@@ -99,6 +99,22 @@ TEST(InterpreterDiagnostic, DwellsAndPlanesOfOtherControls) {
             "an arc of X and Z lies in G18");
 }
 
+TEST(InterpreterDiagnostic, CentresWithAnIdleWord) {
+  const std::string refused = "K word given for arc in xy plane";
+  for (const char* const idle :
+       {"G2 X10 Y0 I5 J0 K0.000 F100", "g3x10y0i5j0k0", "G2 X10 Y0 Z-1 I5 J0 K -0.0",
+        "(Z down) G2 Y10 I5 K+0", "G2 X10 I5 K0 (Z0)"}) {
+    EXPECT_EQ(hint_of(idle, refused),
+              "an arc of X and Y has no K, not even one of 0: leave the word out")
+        << idle;
+  }
+  for (const char* const in_xz :
+       {"G2 X10 Z-5 I5 K0", "G2 X10 Y0 Z-5 I5 K-1", "G2 X10 Y0 I5 J0 K0.5", "G2 X1 Y0 K#1",
+        "G2 X1 Z0 I1 K0 (J0)"}) {
+    EXPECT_EQ(hint_of(in_xz, refused), "an arc of X and Z lies in G18") << in_xz;
+  }
+}
+
 TEST(InterpreterDiagnostic, MissingEndIsAWarning) {
   const Diagnostic said = interpreter_diagnostic(
       "executing\nFile ended with no percent sign or program end\nN4G0 X1\n", {"a.ngc"}, {0, 4}, 4);
