@@ -142,7 +142,7 @@ std::string hint_for(const std::string& message, std::string_view block) {
   if (has("#<_hal[") && has("not defined")) {
     return tr(
         "a dry run has no HAL; of its pins kerf-interp (--interp bridge) knows those of "
-        "QtPlasmaC, rs274 none");
+        "QtPlasmaC, and those that --hal PIN=VALUE names; rs274 none");
   }
   if (has("Unknown m code used: M190")) {
     return tr("kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material");
