@@ -233,6 +233,53 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
   return result;
 }
 
+namespace {
+
+/// A line as the interpreter takes it: in lower case, without blanks, comments and N word.
+std::string bare_block(std::string_view line) {
+  std::string block;
+  bool in_comment = false;
+  for (const char c : line) {
+    if (c == ';' && !in_comment) break;
+    if (c == '(' || c == ')') {
+      in_comment = c == '(';
+    } else if (!in_comment && !is_space(c)) {
+      block += to_lower(c);
+    }
+  }
+  if (!block.empty() && block[0] == 'n') {
+    block.erase(0, std::min(block.find_first_not_of("0123456789", 1), block.size()));
+  }
+  return block;
+}
+
+/// The subroutines of a file that has nothing beside them, "o<a>, o<b>"; empty: it has more.
+std::string only_subroutines(const std::string& path) {
+  constexpr std::size_t kNamed = 3;
+  TextPieces pieces(path);
+  std::string_view piece;
+  std::string names;
+  std::string open;
+  std::size_t count = 0;
+  while (pieces.next(piece)) {
+    while (!piece.empty()) {
+      const std::string block = bare_block(take_line(piece));
+      if (!open.empty()) {
+        if (block.starts_with(open + "endsub")) open.clear();
+        continue;
+      }
+      if (block.empty()) continue;
+      if (block[0] != 'o' || !block.ends_with("sub") || block.ends_with("endsub")) return {};
+      open = block.substr(0, block.size() - 3);
+      if (++count <= kNamed) names += (count > 1 ? ", " : "") + open;
+    }
+  }
+  if (!open.empty()) return {};
+  return count > kNamed ? names + ", .." : names;
+}
+
+}  // namespace
+
 bool is_missing_end(std::string_view message) {
   return message.starts_with("File ended with no percent sign");
 }
@@ -244,6 +291,13 @@ Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
     diagnostic.severity = Severity::kWarning;
     diagnostic.file = files.empty() ? "" : files[0];
     diagnostic.line = static_cast<int>(program_lines);
+    if (const std::string names = only_subroutines(diagnostic.file); !names.empty()) {
+      diagnostic.severity = Severity::kNote;
+      diagnostic.message =
+          trf("the file only defines subroutines ({}) and calls none: nothing is run", names);
+      diagnostic.hint = tr("a program that calls them is what to run; they need no end here");
+      return diagnostic;
+    }
     diagnostic.message = trf("the program has no end: {}", message);
     diagnostic.hint = tr("end it with M2 or M30, or put it between two lines of %");
     return diagnostic;
