@@ -70,6 +70,28 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
+/// Where the number of the block's word begins, outside of its comments; npos: it has none.
+std::size_t find_word(std::string_view block, char letter) {
+  bool in_comment = false;
+  for (std::size_t i = 0; i < block.size() && (in_comment || block[i] != ';'); ++i) {
+    if (block[i] == '(' || block[i] == ')') in_comment = block[i] == '(';
+    if (in_comment || to_lower(block[i]) != letter) continue;
+    return std::min(block.find_first_not_of(" \t", i + 1), block.size());
+  }
+  return block.npos;
+}
+
+/// An arc as some write it, with all three words of its centre: G2 X10 Y0 I5 J0 K0.
+bool has_idle_k(std::string_view block) {
+  const std::size_t at = find_word(block, 'k');
+  if (at == block.npos) return false;
+  double k = 1;
+  const std::size_t sign = at < block.size() && block[at] == '+' ? 1 : 0;
+  std::from_chars(block.data() + at + sign, block.data() + block.size(), k);
+  const auto has = [&](char letter) { return find_word(block, letter) != block.npos; };
+  return k == 0 && (has('j') || has('y') || !has('z'));
+}
+
 /// A block has a G code, outside of its comments: "G0 G91 G28 Z0" has G28.
 bool has_g_code(std::string_view block, int code) {
   bool in_comment = false;
@@ -120,7 +142,7 @@ std::string hint_for(const std::string& message, std::string_view block) {
   if (has("#<_hal[") && has("not defined")) {
     return tr(
         "a dry run has no HAL; of its pins kerf-interp (--interp bridge) knows those of "
-        "QtPlasmaC, rs274 none");
+        "QtPlasmaC, and those that --hal PIN=VALUE names; rs274 none");
   }
   if (has("Unknown m code used: M190")) {
     return tr("kerf-interp (--interp bridge) takes it as QtPlasmaC's change of material");
@@ -141,7 +163,11 @@ std::string hint_for(const std::string& message, std::string_view block) {
   if (has("Radius to end of arc differs") && fits_absolute_centre(message)) {
     return tr("as a place, and not from the arc's start, the centre fits: G90.1 says so");
   }
-  if (has("K word given for arc in xy plane")) return tr("an arc of X and Z lies in G18");
+  if (has("K word given for arc in xy plane")) {
+    return has_idle_k(block)
+               ? tr("an arc of X and Y has no K, not even one of 0: leave the word out")
+               : tr("an arc of X and Z lies in G18");
+  }
   if (has("P word with no") && (has_g_code(block, 73) || has_g_code(block, 81) ||
                                 has_g_code(block, 83) || has_g_code(block, 85))) {
     return tr("LinuxCNC dwells at the bottom of G82, G86, G88 and G89 only: no P here");
@@ -207,6 +233,53 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
   return result;
 }
 
+namespace {
+
+/// A line as the interpreter takes it: in lower case, without blanks, comments and N word.
+std::string bare_block(std::string_view line) {
+  std::string block;
+  bool in_comment = false;
+  for (const char c : line) {
+    if (c == ';' && !in_comment) break;
+    if (c == '(' || c == ')') {
+      in_comment = c == '(';
+    } else if (!in_comment && !is_space(c)) {
+      block += to_lower(c);
+    }
+  }
+  if (!block.empty() && block[0] == 'n') {
+    block.erase(0, std::min(block.find_first_not_of("0123456789", 1), block.size()));
+  }
+  return block;
+}
+
+/// The subroutines of a file that has nothing beside them, "o<a>, o<b>"; empty: it has more.
+std::string only_subroutines(const std::string& path) {
+  constexpr std::size_t kNamed = 3;
+  TextPieces pieces(path);
+  std::string_view piece;
+  std::string names;
+  std::string open;
+  std::size_t count = 0;
+  while (pieces.next(piece)) {
+    while (!piece.empty()) {
+      const std::string block = bare_block(take_line(piece));
+      if (!open.empty()) {
+        if (block.starts_with(open + "endsub")) open.clear();
+        continue;
+      }
+      if (block.empty()) continue;
+      if (block[0] != 'o' || !block.ends_with("sub") || block.ends_with("endsub")) return {};
+      open = block.substr(0, block.size() - 3);
+      if (++count <= kNamed) names += (count > 1 ? ", " : "") + open;
+    }
+  }
+  if (!open.empty()) return {};
+  return count > kNamed ? names + ", .." : names;
+}
+
+}  // namespace
+
 bool is_missing_end(std::string_view message) {
   return message.starts_with("File ended with no percent sign");
 }
@@ -218,6 +291,13 @@ Diagnostic placed_diagnostic(const std::string& message, SourceRef place,
     diagnostic.severity = Severity::kWarning;
     diagnostic.file = files.empty() ? "" : files[0];
     diagnostic.line = static_cast<int>(program_lines);
+    if (const std::string names = only_subroutines(diagnostic.file); !names.empty()) {
+      diagnostic.severity = Severity::kNote;
+      diagnostic.message =
+          trf("the file only defines subroutines ({}) and calls none: nothing is run", names);
+      diagnostic.hint = tr("a program that calls them is what to run; they need no end here");
+      return diagnostic;
+    }
     diagnostic.message = trf("the program has no end: {}", message);
     diagnostic.hint = tr("end it with M2 or M30, or put it between two lines of %");
     return diagnostic;

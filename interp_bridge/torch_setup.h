@@ -20,7 +20,8 @@ struct TorchText {
     std::uint32_t line = 0;
     FilterModes modes;  ///< all of them, from this line on
   };
-  /// It asks for a pin of plasmac or qtplasmac, has a magic comment, or one of the lines above.
+  /// It asks for a pin of plasmac or qtplasmac, or has a magic comment; or two of these three: a
+  /// line `#<holes>=..` or another of the filter's, an M3 with a `$` or S1, an M190 P.
   bool is_qtplasmac = false;
   bool is_filtered = false;     ///< by QtPlasmaC already: its modes are carried out in the text
   std::uint32_t hal_line = 0;   ///< the first with a `#<_hal[..]>`; 0: none
@@ -31,19 +32,23 @@ struct TorchText {
 };
 
 /// Looks through NC code that comes in pieces of whole lines. Any bytes are accepted; costs little
-/// where there is no '#', '(' or ';'.
+/// where there is no '#', '(' or 'M'.
 class TorchTextScanner {
  public:
   void add(std::string_view text);
   TorchText take();
 
  private:
+  void look_for_torch(std::string_view text);
   void set_mode(std::string_view line, std::uint32_t number);
 
   TorchText found_;
   FilterModes modes_;
   std::uint32_t lines_ = 0;      ///< in earlier pieces
   bool conversational_ = false;  ///< made by QtPlasmaC, which senses no holes in it
+  bool has_modes_ = false;
+  bool starts_torch_ = false;
+  bool changes_material_ = false;
 };
 
 /// What a run is given.

@@ -42,6 +42,27 @@ bool begins_line(std::string_view text, std::size_t at) {
   return true;
 }
 
+/// The line that `at` is in, as bare() has it.
+std::string bare_line(std::string_view text, std::size_t at) {
+  const std::size_t before = at == 0 ? text.npos : text.rfind('\n', at - 1);
+  return bare(text.substr(before == text.npos ? 0 : before + 1));
+}
+
+/// `word` with no digit behind it.
+bool has_code(std::string_view line, std::string_view word) {
+  for (std::size_t at = line.find(word); at != line.npos; at = line.find(word, at + 1)) {
+    const std::string_view behind = line.substr(at + word.size(), 1);
+    if (behind.empty() || (!is_digit(behind[0]) && behind[0] != '.')) return true;
+  }
+  return false;
+}
+
+/// A torch of QtPlasmaC is spindle 0, a scribe 1, a spotter 2, and each turns at 1: M3 $0 S1.
+bool starts_torch(std::string_view line) {
+  if (!has_code(line, "m3") && !has_code(line, "m03")) return false;
+  return line.find('$') != line.npos || has_code(line, "s1");
+}
+
 std::uint32_t lines_before(std::string_view text, std::size_t from, std::size_t at) {
   return static_cast<std::uint32_t>(newline_count(text.substr(from, at - from)));
 }
@@ -62,6 +83,7 @@ void TorchTextScanner::add(std::string_view text) {
        at = text.find("(o=", at + 1)) {
     found_.is_qtplasmac = begins_line(text, at);
   }
+  look_for_torch(text);
   const std::uint32_t lines_of_earlier = lines_;
   std::size_t counted_to = 0;
   std::uint32_t number = 1;
@@ -82,6 +104,19 @@ void TorchTextScanner::add(std::string_view text) {
   lines_ += lines_before(text, 0, text.size());
 }
 
+void TorchTextScanner::look_for_torch(std::string_view text) {
+  for (const char letter : {'M', 'm'}) {
+    for (std::size_t at = text.find(letter); at != text.npos; at = text.find(letter, at + 1)) {
+      if (starts_torch_ && changes_material_) return;
+      const std::string word = bare(text.substr(at, 12));
+      const bool code = word.starts_with("m3") || word.starts_with("m03");
+      starts_torch_ = starts_torch_ || (code && starts_torch(bare_line(text, at)));
+      changes_material_ = changes_material_ ||
+                          (word.starts_with("m190p") && contains(bare_line(text, at), "m190p"));
+    }
+  }
+}
+
 void TorchTextScanner::set_mode(std::string_view line, std::uint32_t number) {
   const std::string code = bare(line);
   const std::size_t close = code.find(">=");
@@ -91,7 +126,7 @@ void TorchTextScanner::set_mode(std::string_view line, std::uint32_t number) {
       "holes", "h_diameter", "m_diameter", "i_diameter", "h_velocity", "oclength", "pierce-only"};
   const auto known = std::find(kNames.begin(), kNames.end(), name);
   if (known == kNames.end()) return;
-  found_.is_qtplasmac = true;
+  has_modes_ = true;
   double value = 0;
   // The filter reads plain numbers only.
   if (!read_material_number(std::string_view(code).substr(close + 2), value) || value < 0) return;
@@ -119,6 +154,8 @@ void TorchTextScanner::set_mode(std::string_view line, std::uint32_t number) {
 }
 
 TorchText TorchTextScanner::take() {
+  // None of them alone: a mill's program may have a variable #<holes>, or an M190 of its own.
+  found_.is_qtplasmac |= has_modes_ + starts_torch_ + changes_material_ >= 2;
   if (found_.is_filtered || conversational_) found_.changes.clear();
   return std::move(found_);
 }

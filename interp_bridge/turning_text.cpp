@@ -110,12 +110,17 @@ void TurningScanner::note_code(int tenths, bool has_q) {
   switch (tenths) {
     case 70:
       return set_first(words_.diameter_mode, line_);
+    case 80:
+      return set_first(words_.radius_mode, line_);
     case 170:
     case 190:
       words_.other_plane = true;
       return;
     case 180:
       return set_first(words_.plane_xz, line_);
+    case 330:
+      if (words_.plane_xz != 0) set_first(words_.thread, line_);
+      return;
     case 410:
     case 411:
     case 420:
@@ -125,6 +130,8 @@ void TurningScanner::note_code(int tenths, bool has_q) {
     case 760:
       if (words_.plane_xz != 0) set_first(words_.threading, line_);
       return;
+    case 950:
+      return set_first(words_.feed_per_turn, line_);
     case 960:
       return set_first(words_.surface_speed, line_);
     default:

@@ -15,6 +15,9 @@ struct TurningWords {
   std::uint32_t threading = 0;      ///< G76 behind a G18, the only plane in which it runs
   std::uint32_t contour_cycle = 0;  ///< G70, G71 or G72 with a Q (without: no cycle of LinuxCNC)
   std::uint32_t surface_speed = 0;  ///< G96
+  std::uint32_t radius_mode = 0;    ///< G8: X is a radius, as it is anyway
+  std::uint32_t feed_per_turn = 0;  ///< G95
+  std::uint32_t thread = 0;         ///< G33 behind a G18
   std::uint32_t compensation = 0;   ///< G41, G42 behind a G18
   std::uint32_t plane_xz = 0;       ///< G18
   bool other_plane = false;         ///< G17, G19

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/interp_bridge/program_test_support.h"
 
 namespace kerf {
@@ -99,6 +103,21 @@ TEST(InterpreterDiagnostic, DwellsAndPlanesOfOtherControls) {
             "an arc of X and Z lies in G18");
 }
 
+TEST(InterpreterDiagnostic, CentresWithAnIdleWord) {
+  const std::string refused = "K word given for arc in xy plane";
+  for (const char* const idle :
+       {"G2 X10 Y0 I5 J0 K0.000 F100", "g3x10y0i5j0k0", "G2 X10 Y0 Z-1 I5 J0 K -0.0",
+        "(Z down) G2 Y10 I5 K+0", "G2 X10 I5 K0 (Z0)"}) {
+    EXPECT_EQ(hint_of(idle, refused),
+              "an arc of X and Y has no K, not even one of 0: leave the word out")
+        << idle;
+  }
+  for (const char* const in_xz : {"G2 X10 Z-5 I5 K0", "G2 X10 Y0 Z-5 I5 K-1",
+                                  "G2 X10 Y0 I5 J0 K0.5", "G2 X1 Y0 K#1", "G2 X1 Z0 I1 K0 (J0)"}) {
+    EXPECT_EQ(hint_of(in_xz, refused), "an arc of X and Z lies in G18") << in_xz;
+  }
+}
+
 TEST(InterpreterDiagnostic, MissingEndIsAWarning) {
   const Diagnostic said = interpreter_diagnostic(
       "executing\nFile ended with no percent sign or program end\nN4G0 X1\n", {"a.ngc"}, {0, 4}, 4);
@@ -106,6 +125,30 @@ TEST(InterpreterDiagnostic, MissingEndIsAWarning) {
       to_string(said),
       "a.ngc:4: warning: the program has no end: File ended with no percent sign or program end\n"
       "   hint: end it with M2 or M30, or put it between two lines of %\n");
+}
+
+TEST(InterpreterDiagnostic, FilesOfSubroutinesNeedNoEnd) {
+  const TestFolder folder;
+  const auto said = [&](const std::string& text) {
+    const std::string main = folder.write("main.ngc", text);
+    const std::string message = "File ended with no percent sign or program end\nN1\n";
+    return interpreter_diagnostic(message, {main}, {0, 1}, 1);
+  };
+  const std::string only = "the file only defines subroutines (";
+  const std::string rest = ") and calls none: nothing is run";
+  for (const auto& [text, names] : std::vector<std::pair<std::string, std::string>>{
+           {"(a hole)\n\nO<Hole> sub (x)\nG1 X1\no<hole> endsub [1] ; x\n", "o<hole>"},
+           {"n10 o100sub\r\no101 if [1]\nM2\no101 endif\nN20 O100 endsub\r\n", "o100"},
+           {"o1 sub\no1 endsub\no2 sub\no2 endsub\no3 sub\no3 endsub\no4 sub\no4 endsub",
+            "o1, o2, o3, .."}}) {
+    EXPECT_EQ(said(text).message, only + names + rest) << text;
+    EXPECT_EQ(said(text).severity, Severity::kNote) << text;
+  }
+  for (const char* const text : {"o<a> sub\no<a> endsub\nG0 X1\n", "G21\no<a> sub\no<a> endsub\n",
+                                 "o<a> sub\no<a> endsub\no<a> call\n", "o<a> sub\nG0 X1\n",
+                                 "o<a> endsub\n", "(none)\n", "G0 X1 (o<a> sub)\n", ""}) {
+    EXPECT_EQ(said(text).severity, Severity::kWarning) << text;
+  }
 }
 
 TEST(InterpreterDiagnostic, UnnumberedEchoIsLookedUp) {

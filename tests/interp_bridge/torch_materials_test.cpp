@@ -184,6 +184,18 @@ TEST(TorchText, TellsQtPlasmacPrograms) {
   EXPECT_TRUE(scan("G21\nn10 (o=0, ph=1)\n").is_qtplasmac);
   EXPECT_TRUE(scan("F#<_HAL[qtplasmac.cut_feed_rate-f]>\n").is_qtplasmac);
   EXPECT_FALSE(scan("\nF#<_hal[motion.x]>\n").is_qtplasmac);
+  for (const char* const torch :
+       {"#<holes>=4\nM3 $0 S1\n", "m3s1\n#<holes>=4\n", "#<oclength>=3\nN20 S1 M03\n",
+        "M190 P2\nG0 X1\nM3 S1 (torch)\n", "#<pierce-only>=1\nm190 p1 \n"}) {
+    EXPECT_TRUE(scan(torch).is_qtplasmac) << torch;
+    EXPECT_TRUE(scan(torch, 1).is_qtplasmac) << torch;
+  }
+  for (const char* const mill :
+       {"#<holes>=4\nM3 S8000\n", "#<holes>=4\n#<h_diameter>=6\nM3 S1000\n", "M3 $0 S1\n",
+        "M190 P2\nM3 S800\n", "#<holes>=4\n(M3 S1)\nM30 S1\n", "#<holes>=4\n;M190 P1\nM190\n",
+        "#<holes>=4\nM3 S1.5\nM33 $1\n"}) {
+    EXPECT_FALSE(scan(mill).is_qtplasmac) << mill;
+  }
   EXPECT_EQ(scan("\nF#<_hal[motion.x]>\n").hal_line, 2U);
   EXPECT_EQ(scan("G0\n\nF#<_hal[plasmac.x]>\nG0\n", 1).hal_line, 3U);
 }
@@ -192,7 +204,8 @@ TEST(TorchText, ModesHoldFromTheirLineOn) {
   for (const std::size_t piece : {1U, 7U, 1'000'000U}) {
     const TorchText text = scan(
         "G21\n#<holes> = 4 (with overburn)\nG0\n  N30 #<H_Diameter>=20;mm\n#<h_velocity>=50\n"
-        "#<oclength>=0\n#<other>=1\n#<holes>=[1+1]\nG1 X#<holes>\n#<holes>=0\n#<pierce-only>=1\n",
+        "#<oclength>=0\n#<other>=1\n#<holes>=[1+1]\nG1 X#<holes>\n#<holes>=0\n#<pierce-only>=1\n"
+        "M3 $0 S1\n",
         piece);
     EXPECT_TRUE(text.is_qtplasmac);
     ASSERT_EQ(text.changes.size(), 6U);
@@ -206,7 +219,7 @@ TEST(TorchText, ModesHoldFromTheirLineOn) {
 }
 
 TEST(TorchText, WhatHasBeenFilteredIsNotFilteredAgain) {
-  const TorchText text = scan("#<holes>=4\nG0 X1\n;qtplasmac filtered G-code file\n");
+  const TorchText text = scan("#<holes>=4\nM3 $0 S1\nG0 X1\n;qtplasmac filtered G-code file\n");
   EXPECT_TRUE(text.is_qtplasmac);
   EXPECT_TRUE(text.is_filtered);
   EXPECT_TRUE(text.changes.empty());

@@ -160,7 +160,8 @@ TEST_F(TorchProgram, TheTextInterpreterSaysThatItCannot) {
             folder_.path("part.ngc") +
                 ":3: error: Named parameter #<_hal[plasmac.cut-feed-rate]> not defined\n"
                 "     3 | F#<_hal[plasmac.cut-feed-rate]>\n   hint: a dry run has no HAL; of its "
-                "pins kerf-interp (--interp bridge) knows those of QtPlasmaC, rs274 none\n");
+                "pins kerf-interp (--interp bridge) knows those of QtPlasmaC, and those that "
+                "--hal PIN=VALUE names; rs274 none\n");
   EXPECT_EQ(this->run("G21\nM190 P1\nM2\n", true).messages(),
             folder_.path("part.ngc") +
                 ":2: error: Unknown m code used: M190\n     2 | M190 P1\n   hint: kerf-interp "

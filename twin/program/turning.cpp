@@ -31,6 +31,17 @@ std::string sign_of_words(const TurningWords& words, const std::string& path) {
     return at(words.compensation,
               tr("G41 or G42 in the XZ plane (G18), in a program of X and Z alone"));
   }
+  if (words.radius_mode != 0) {
+    return at(words.radius_mode, tr("G8, X is a radius, in a program of X and Z alone in G18"));
+  }
+  if (words.thread != 0) {
+    return at(words.thread,
+              tr("G33, a feed with the spindle, in a program of X and Z alone in G18"));
+  }
+  if (words.feed_per_turn != 0) {
+    return at(words.feed_per_turn,
+              tr("G95, feed per revolution, in a program of X and Z alone in G18"));
+  }
   return {};
 }
 

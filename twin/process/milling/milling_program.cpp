@@ -33,6 +33,7 @@ void MillingStage::watch_program(const Motion& m, const TimedStep& step) {
     changes_.end_tool();
     program_.end_tool();
   }
+  program_.follow(m);
   if (checks_.options().is_drawn) return;
   if (!cutter() || !program_.may_stop_in_part(m) || !site_.moves.is_upright(m)) return;
   complete();

@@ -8,6 +8,7 @@
 
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "interp_bridge/motion_kinds.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -23,17 +24,6 @@ bool stops(const Motion& m) {
          m.kind == MotionKind::kProgramEnd;
 }
 
-const char* words_of(MotionKind kind) {
-  switch (kind) {
-    case MotionKind::kToolChange:
-      return tr("the tool is changed");
-    case MotionKind::kProgramEnd:
-      return tr("the program ends");
-    default:
-      return tr("the program stops (M0, M1, M60)");
-  }
-}
-
 std::string extent(const Box& box) {
   // No "-0.0".
   const auto tenths = [](double mm) { return std::round(mm * 10) / 10 + 0.0; };
@@ -45,6 +35,23 @@ std::string extent(const Box& box) {
 }  // namespace
 
 void ProgramChecks::forget_events() { drill_told_ = false; }
+
+void ProgramChecks::follow(const Motion& m) {
+  if (m.kind == MotionKind::kDwell || m.kind == MotionKind::kStop) return;
+  const bool turns = is_feed(m) && m.spindle != SpindleState::kStopped;
+  turning_feed_at_ = turns ? m.source : SourceRef();
+}
+
+const char* ProgramChecks::words_of(const Motion& m) const {
+  if (m.kind == MotionKind::kToolChange) return tr("the tool is changed");
+  if (m.kind == MotionKind::kProgramEnd) return tr("the program ends");
+  // Behind its feed no block but a boring cycle's stops the spindle and then the program: an M5
+  // comes before the feed of its block.
+  const bool bores =
+      m.source.line != 0 && m.source == turning_feed_at_ && m.spindle == SpindleState::kStopped;
+  return bores ? tr("G88 stops spindle and program at the bottom of its hole")
+               : tr("the program stops (M0, M1, M60)");
+}
 
 bool ProgramChecks::may_stop_in_part(const Motion& m) const {
   if (!stops(m) || !m.start_known || is_empty_) return false;
@@ -78,8 +85,8 @@ void ProgramChecks::check_stop(const Motion& m, const TimedStep& step, const Cut
   finding.time_s = step.start_s;
   finding.position_mm = tip;
   finding.tool = tool;
-  finding.text = trf("{} while the tool is inside the part, {:.2f} mm below its top",
-                     words_of(m.kind), bounds_mm_.max.z - tip.z);
+  finding.text = trf("{} while the tool is inside the part, {:.2f} mm below its top", words_of(m),
+                     bounds_mm_.max.z - tip.z);
   log_.add(std::move(finding));
 }
 

@@ -28,6 +28,8 @@ class ProgramChecks {
   /// The tool is changed.
   void end_tool() { drill_told_ = false; }
 
+  /// Each motion of the program in turn, of which what follows may be asked.
+  void follow(const Motion& motion);
   /// stop-in-part is to be looked for: the motion stops, and the tip is below the top of the blank,
   /// inside its outline.
   bool may_stop_in_part(const Motion& motion) const;
@@ -47,12 +49,14 @@ class ProgramChecks {
 
  private:
   bool touches(const Cutter& cutter, const Vec3& tip, const Vec3& to) const;
+  const char* words_of(const Motion& motion) const;
 
   const StockModel& stock_;
   Box bounds_mm_;
   bool is_empty_;  ///< material is added
   FindingLog& log_;
   bool drill_told_ = false;
+  SourceRef turning_feed_at_;  ///< the last motion but dwells: a feed, with the spindle on
 };
 
 /// nothing-cut: what a whole program has done, for the finding. Nothing if it has cut, or if it is
