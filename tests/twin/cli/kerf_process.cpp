@@ -141,13 +141,10 @@ bool RunningKerf::wait_until(const std::function<bool()>& ready) const {
 void RunningKerf::send(int signal) const { kill(pid_, signal); }
 
 double RunningKerf::cpu_s() const {
-  const std::string stat = read_file("/proc/" + std::to_string(pid_) + "/stat");
-  std::istringstream fields(stat.substr(std::min(stat.size(), stat.rfind(')') + 1)));
-  std::string skipped;
-  for (int i = 0; i < 11; ++i) fields >> skipped;
-  double user = 0, system = 0;
-  fields >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  clockid_t clock{};
+  timespec spent{};
+  if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &spent) != 0) return 0;
+  return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
 }
 
 void RunningKerf::wait_for_end() const {
