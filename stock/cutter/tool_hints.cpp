@@ -80,7 +80,7 @@ class HintFinder {
     if (read_pcb2gcode()) return;
     if (read_flatcam()) return;
     if (read_freecad()) return;
-    if (read_tool_line()) return;
+    if (read_numbered_line() || read_tool_line()) return;
     if (read_vectric()) return;
     if (read_at_block()) return;
     read_prose();
@@ -344,6 +344,37 @@ class HintFinder {
     }
     add(tool, "freecad", facts);
     return true;
+  }
+
+  /// "Tool: 23 YG-1 .375 CoHSS stub drill": the number is the tool's, and a size is what can be
+  /// nothing else.
+  bool read_numbered_line() {
+    const std::optional<NumberedText> numbered = split_bare_number(lower_);
+    if (!numbered) return false;
+    if (comment().block_tool >= 0 && comment().block_tool != numbered->tool) return true;
+    // "Tool: 1 1/4 end mill": who knows which of the two.
+    constexpr int kMostInches = 4;
+    const std::size_t slash = numbered->rest.find_first_not_of("0123456789");
+    const bool mixed = slash != std::string_view::npos && slash > 0 && numbered->rest[slash] == '/';
+    if (mixed && numbered->tool <= kMostInches) return true;
+    CutterFacts facts = read_free_text(without_makers(numbered->rest), comment().inches);
+    if (facts.kind == CutterKind::kUnnamed) return true;
+    if (facts.diameter_is_whole) facts.diameter_mm.reset();
+    add(numbered->tool, "tool-line", facts);
+    return true;
+  }
+
+  /// Without "yg-1", or "yg-1 1/2-13 tap" would be one and a half inches.
+  static std::string without_makers(std::string_view text) {
+    std::string kept;
+    for (const std::string_view word : words_of(text)) {
+      const std::size_t dash = word.find('-');
+      const bool name = dash != std::string_view::npos && dash > 1 && is_letter(word[dash - 1]) &&
+                        dash + 1 < word.size() &&
+                        word.find_first_not_of("0123456789", dash + 1) == std::string_view::npos;
+      if (!name) kept.append(kept.empty() ? "" : " ").append(word);
+    }
+    return kept;
   }
 
   /// "Tool: D = 3.0 mm type END flutes 2" (Fabex), "TOOL: V-BIT {90 DEG 0.5\"}" (Vectric), "MSG,

@@ -25,6 +25,12 @@ std::string hints_in(const std::vector<CommentText>& comments) {
 std::string mm(const char* text) { return hints_in({{1, text, false}}); }
 std::string inch(const char* text) { return hints_in({{1, text, true}}); }
 
+CommentText in_block(const char* text, int tool) {
+  CommentText comment{1, text, false};
+  comment.block_tool = tool;
+  return comment;
+}
+
 TEST(ToolHints, Fusion) {
   EXPECT_EQ(mm("T1 D=6. CR=0. - ZMIN=-29.5 - flat end mill"), "fusion T1 flat:6");
   EXPECT_EQ(mm("T12  D=6. CR=3. - ZMIN=-2 - BALL END MILL"), "fusion T12 ball:6");
@@ -169,6 +175,26 @@ TEST(ToolHints, LinesThatNameATool) {
   EXPECT_EQ(mm("MSG, optional stop"), "");
 }
 
+TEST(ToolHints, ALineThatBeginsWithTheToolsNumber) {
+  EXPECT_EQ(mm("Tool: 5 HSS drill"), "");
+  EXPECT_EQ(inch("Tool: 5 HSS drill"), "");
+  EXPECT_EQ(inch("Tool: 23 YG-1 .375 CoHSS stub drill"), "tool-line T23 drill:9.525:118");
+  EXPECT_EQ(inch("Tool: 24 YG-1 1/2-13 LH P-HSS spiral tap"), "tool-line T24 flat:12.7");
+  EXPECT_EQ(inch("Tool: 21  M4 #3 (.250) Center drill"), "tool-line T21 drill:6.35:118");
+  EXPECT_EQ(mm("Tool: 7 6mm end mill"), "tool-line T7 flat:6");
+  EXPECT_EQ(mm("Tool: 7 1/4 end mill"), "tool-line T7 flat:6.35");
+  EXPECT_EQ(mm("Tool: 3 V-bit 60 deg 12 mm"), "tool-line T3 vee:12:60");
+  EXPECT_EQ(mm("Tool: 5 drill of box 12"), "") << "12 may be anything";
+  EXPECT_EQ(mm("Tool: 1 1/4 end mill"), "") << "31.75 mm, or 6.35 of tool 1";
+  // What a unit, a fraction or its name makes a size is no number of a tool.
+  EXPECT_EQ(mm("Tool: 6 mm end mill"), "tool-line T-1 flat:6");
+  EXPECT_EQ(mm("Tool: 2 flute 3 mm end mill"), "tool-line T-1 flat:3");
+  EXPECT_EQ(mm("Tool: 6 dia end mill"), "tool-line T-1 flat:6");
+  EXPECT_EQ(mm("Tool: 60 v-bit 1/2\""), "tool-line T-1 vee:12.7:60");
+  EXPECT_EQ(hints_in({in_block("Tool: 5 HSS .25 drill", 5)}), "tool-line T5 drill:0.25:118");
+  EXPECT_EQ(hints_in({in_block("Tool: 5 HSS .25 drill", 4)}), "");
+}
+
 TEST(ToolHints, Prose) {
   EXPECT_EQ(inch(" and Cutter is assumed to be a 10mm ball nose "), "prose T-1 ball:10");
   EXPECT_EQ(mm("Ball cutter D=10.00"), "prose T-1 ball:10");
@@ -231,12 +257,6 @@ TEST(ToolHints, LengthsAreNoDiameters) {
   EXPECT_EQ(mm("T3 = 50 mm long 6 mm end mill, shank 8 mm"), "list T3 flat:6");
 }
 
-CommentText in_block(const char* text, int tool) {
-  CommentText comment{1, text, false};
-  comment.block_tool = tool;
-  return comment;
-}
-
 TEST(ToolHints, OfABlockBelongToItsTool) {
   EXPECT_EQ(hints_in({in_block("2\" Facemill", 2)}), "block T2 flat:50.8");
   EXPECT_EQ(hints_in({in_block("5 mm drill", 3)}), "block T3 drill:5:118");
@@ -292,6 +312,7 @@ TEST(ToolHints, CutAtEveryByteNeverCrashes) {
       "Operation: Outside Offset, 17_, T4: Plasma, 1.5 mm kerf",
       "MSG, Change tool bit to mill diameter 0.20000mm",
       "TOOL: V-BIT {90 DEG 0.5\"}",
+      "Tool: 24 YG-1 1/2-13 LH P-HSS spiral tap",
       "MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"};
   std::size_t hints = 0;
   for (const std::string text : texts) {
