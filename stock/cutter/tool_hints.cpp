@@ -202,6 +202,12 @@ class HintFinder {
   bool read_at_block() {
     const int tool = comment().block_tool;
     if (tool < 0) return false;
+    if (const std::optional<double> diameter = diameter_alone()) {
+      CutterFacts facts;
+      facts.diameter_mm = *diameter * unit_mm();
+      add(tool, "block", facts);
+      return true;
+    }
     const int named = tool_named_in(lower_);
     if ((named != -1 && named != tool) || contains(lower_, "next")) return true;
     const CutterFacts facts = read_free_text(lower_, comment().inches);
@@ -209,6 +215,22 @@ class HintFinder {
     if (facts.kind == CutterKind::kUnnamed || !sized) return false;
     add(tool, "block", facts);
     return true;
+  }
+
+  /// "T1M6(D26)". Behind T6, D6 may as well be the number of its offset.
+  std::optional<double> diameter_alone() const {
+    std::string_view text = lower_;
+    bool sign = false;
+    for (const std::string_view diameter : {"d", "\xc3\xb8", "\xc3\x98"}) {
+      if (sign || !text.starts_with(diameter)) continue;
+      sign = true;
+      text.remove_prefix(diameter.size());
+    }
+    if (text.ends_with("mm") && !comment().inches) text = trim(text.substr(0, text.size() - 2));
+    if (!sign || text.empty() || !starts_with_number(text)) return std::nullopt;
+    const std::optional<double> value = parse_decimal(text);
+    if (!value || *value <= 0 || *value == comment().block_tool) return std::nullopt;
+    return value;
   }
 
   static bool starts_with_number(std::string_view text) {
@@ -312,8 +334,13 @@ class HintFinder {
     return true;
   }
 
-  /// TOOL DIAMETER: 0.1 mm | MSG, Change to Tool Dia = 0.1000 [||| Total drills for tool T1 = 10]
+  /// Tool-Diameter: 2.5mm (viaConstructor) | TOOL DIAMETER: 0.1 mm | MSG, Change to Tool Dia =
+  /// 0.1000 [||| Total drills for tool T1 = 10]
   bool read_flatcam() {
+    if (lower_.starts_with("tool-diameter:")) {
+      add(-1, "viaconstructor", read_free_text(lower_, comment().inches));
+      return true;
+    }
     const std::size_t at = lower_.find("tool dia");
     if (at == std::string::npos) return false;
     const bool line = at == 0 || std::string_view(lower_).starts_with("msg, change to tool dia");

@@ -42,6 +42,7 @@ std::optional<ToolHint> turning_hint(const CommentText& comment,
   const std::optional<ShapeText> shape = turning_shape_in_text(
       about, comment.inches, row == rows.end() ? TurningFacts{} : row->second);
   if (!shape || (!is_tools && !is_unmistakable(shape->shape))) return std::nullopt;
+  if (tool < 0 && shape->guessed) return std::nullopt;
   ToolHint hint;
   hint.tool = tool;
   hint.line = comment.line;

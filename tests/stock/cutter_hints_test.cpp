@@ -76,6 +76,13 @@ TEST(ToolHints, FlatCam) {
   EXPECT_EQ(mm("Compensated Tool Path. Diameter: 3.0"), "");
 }
 
+TEST(ToolHints, ViaConstructor) {
+  EXPECT_EQ(mm("Tool-Diameter: 2.5mm"), "viaconstructor T-1 flat:2.5 guessed");
+  EXPECT_EQ(inch("Tool-Diameter: 0.125"), "viaconstructor T-1 flat:3.175 guessed");
+  EXPECT_EQ(mm("Tool-Offset: 1.25mm none"), "");
+  EXPECT_EQ(mm("Tool-Mode: mill"), "");
+}
+
 TEST(ToolHints, CutViewer) {
   EXPECT_EQ(mm("TOOL/MILL,6.3500,0,1.0000,0.0"), "cutviewer T-1 flat:6.35");
   // Half of the diameter within the decimals written.
@@ -269,6 +276,20 @@ TEST(ToolHints, OfABlockBelongToItsTool) {
   EXPECT_EQ(hints_in({in_block("Reset tool", 2)}), "");
 }
 
+TEST(ToolHints, ADiameterAloneOfABlock) {
+  EXPECT_EQ(hints_in({in_block("D26", 1)}), "block T1 flat:26 guessed");
+  EXPECT_EQ(hints_in({in_block("D6.5mm", 1)}), "block T1 flat:6.5 guessed");
+  EXPECT_EQ(hints_in({in_block("\xc3\x98"
+                               "8",
+                               1)}),
+            "block T1 flat:8 guessed");
+  EXPECT_EQ(hints_in({in_block("D12", 12)}), "") << "the number of an offset";
+  EXPECT_EQ(hints_in({in_block("D26 H1", 1)}), "");
+  EXPECT_EQ(hints_in({in_block("DN26", 1)}), "");
+  EXPECT_EQ(hints_in({in_block("D", 1)}), "");
+  EXPECT_EQ(mm("D26"), "") << "of no tool";
+}
+
 TEST(ToolHints, NearAreThoseThatNameNoToolAndAreNotAtAChange) {
   const auto near = [](const char* text, bool at_change) {
     CommentText comment{1, text, false};
@@ -312,6 +333,7 @@ TEST(ToolHints, CutAtEveryByteNeverCrashes) {
       "Operation: Outside Offset, 17_, T4: Plasma, 1.5 mm kerf",
       "MSG, Change tool bit to mill diameter 0.20000mm",
       "TOOL: V-BIT {90 DEG 0.5\"}",
+      "Tool-Diameter: 2.5mm",
       "Tool: 24 YG-1 1/2-13 LH P-HSS spiral tap",
       "MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"};
   std::size_t hints = 0;
@@ -417,6 +439,23 @@ TEST(BlankHints, AnIncompleteWorkpieceIsNone) {
             "");
   EXPECT_EQ(blank_in({{1, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=5,XMAX=1,YMAX=1,ZMAX=0", false}}), "");
   EXPECT_EQ(blank_in({{1, "go again to the center of the workpiece", false}}), "");
+}
+
+TEST(BlankHints, LatheEasyStep) {
+  const CommentText diameter{1, "Rohteil Aussendurchmesser: 50.000 mm", false};
+  const CommentText range{2, "Rohteil Z-Bereich: 1.000 bis -80.000 mm", false};
+  EXPECT_EQ(blank_in({diameter, range}), "easystep cylinder:0,0,-80:1:50");
+  EXPECT_EQ(blank_in({range, diameter}), "easystep cylinder:0,0,-80:1:50");
+  EXPECT_EQ(blank_in({diameter}), "");
+  EXPECT_EQ(blank_in({range}), "");
+  EXPECT_EQ(blank_in({diameter, {2, "Rohteil Z-Bereich: -80.000 bis 1.000 mm", false}}), "");
+  EXPECT_EQ(blank_in({{1, "Rohteil Aussendurchmesser: 2.000 mm", true},
+                      {2, "Rohteil Z-Bereich: 1.000 bis -8.000 mm", true}}),
+            "")
+      << "inches that are called mm";
+  EXPECT_EQ(blank_in({diameter, range, {3, "STOCK/BLOCK,100,50,20,50,25,20", false}}),
+            "cutviewer box:-50,-25,-20:50,25,0");
+  EXPECT_EQ(blank_in({{1, "WARN: Startpunkt X50.000 Z1.000 liegt im Rohteil", false}}), "");
 }
 
 TEST(BlankHints, CutAtEveryByteNeverCrashes) {
