@@ -89,14 +89,49 @@ std::string block_body(const std::vector<std::string_view>& fields, double unit_
                      mm(values[2] - values[5]));
 }
 
+/// Lathe EasyStep says "mm" in programs of inches, too: of those nothing is taken.
+///     Rohteil Aussendurchmesser: 50.000 mm
+///     Rohteil Z-Bereich: 1.000 bis -80.000 mm
+class EasyStepBar {
+ public:
+  void add(const CommentText& comment, std::string_view lower) {
+    if (!lower.starts_with("rohteil ") || comment.inches) return;
+    const std::vector<std::string_view> words = words_of(lower);
+    if (words.size() < 4 || words.back() != "mm") return;
+    if (words[1] == "aussendurchmesser:" && words.size() == 4) {
+      diameter_mm_ = parse_decimal(words[2]);
+      line_ = comment.line;
+    } else if (words[1] == "z-bereich:" && words.size() == 6 && words[3] == "bis") {
+      top_mm_ = parse_decimal(words[2]);
+      floor_mm_ = parse_decimal(words[4]);
+    }
+  }
+
+  std::optional<BlankHint> hint() const {
+    if (!diameter_mm_ || !top_mm_ || !floor_mm_) return std::nullopt;
+    BlankHint bar;
+    bar.line = line_;
+    bar.dialect = "easystep";
+    bar.spec =
+        fmt::format("cylinder:0,0,{}:{}:{}", mm(*floor_mm_), mm(*top_mm_), mm(*diameter_mm_));
+    return parse_blank(bar.spec) ? std::optional<BlankHint>(bar) : std::nullopt;
+  }
+
+ private:
+  std::uint32_t line_ = 0;
+  std::optional<double> diameter_mm_, top_mm_, floor_mm_;
+};
+
 }  // namespace
 
 std::optional<BlankHint> find_blank_hint(std::span<const CommentText> comments) {
   BlankHint workpiece;
   BlankHint block;
+  EasyStepBar bar;
   for (const CommentText& comment : comments) {
     if (comment.text.size() > kLongestComment) continue;
     const std::string lower = to_lower(comment.text);
+    bar.add(comment, trim(lower));
     const std::vector<std::string_view> fields = split(lower, ',');
     const std::string_view name = trim(fields[0]);
     const double unit_mm = comment.inches ? kMmPerInch : 1;
@@ -117,7 +152,7 @@ std::optional<BlankHint> find_blank_hint(std::span<const CommentText> comments) 
     workpiece.dialect = "workpiece";
     return parse_blank(workpiece.spec) ? std::optional<BlankHint>(workpiece) : std::nullopt;
   }
-  if (block.spec.empty()) return std::nullopt;
+  if (block.spec.empty()) return bar.hint();
   block.dialect = "cutviewer";
   return block;
 }

@@ -33,6 +33,7 @@ struct Quantity {
   double value = 0;
   Unit unit = Unit::kNone;
   bool fraction = false;
+  bool whole = false;
   Label label = Label::kNone;
 };
 
@@ -113,9 +114,9 @@ class QuantityScanner {
     Quantity q;
     const std::size_t end = skip_digits(at_, true);
     q.value = number(at_, end);
-    const bool whole = text_.substr(at_, end - at_).find('.') == std::string_view::npos;
+    q.whole = text_.substr(at_, end - at_).find('.') == std::string_view::npos;
     at_ = end;
-    if (!whole) return q;
+    if (!q.whole) return q;
     if (peek(end) == '/') {
       read_denominator(q, end, 0);
     } else if ((peek(end) == '-' || peek(end) == ' ') && is_digit(peek(end + 1))) {
@@ -139,6 +140,7 @@ class QuantityScanner {
       if (denominator == power && q.value < denominator) {
         q.value = units + q.value / denominator;
         q.fraction = true;
+        q.whole = false;
         at_ = end;
       }
     }
@@ -361,6 +363,7 @@ CutterFacts read_free_text(std::string_view text, bool inches) {
   if (const Quantity* q = find_diameter(quantities)) {
     facts.diameter_mm = to_mm(*q, inches);
     facts.diameter_is_explicit = q->label == Label::kDiameter || q->unit != Unit::kNone;
+    facts.diameter_is_whole = q->whole && !facts.diameter_is_explicit;
   }
   return facts;
 }

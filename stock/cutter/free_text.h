@@ -28,6 +28,7 @@ struct CutterFacts {
   CutterKind kind = CutterKind::kUnnamed;
   std::optional<double> diameter_mm;
   bool diameter_is_explicit = false;  ///< it has a unit or a label such as "dia", "D="
+  bool diameter_is_whole = false;     ///< a bare whole number: it may count something
   std::optional<double> corner_mm;
   std::optional<double> angle_deg;  ///< as written: included or half depends on kind
   bool angle_is_half = false;

@@ -80,7 +80,7 @@ class HintFinder {
     if (read_pcb2gcode()) return;
     if (read_flatcam()) return;
     if (read_freecad()) return;
-    if (read_tool_line()) return;
+    if (read_numbered_line() || read_tool_line()) return;
     if (read_vectric()) return;
     if (read_at_block()) return;
     read_prose();
@@ -202,6 +202,12 @@ class HintFinder {
   bool read_at_block() {
     const int tool = comment().block_tool;
     if (tool < 0) return false;
+    if (const std::optional<double> diameter = diameter_alone()) {
+      CutterFacts facts;
+      facts.diameter_mm = *diameter * unit_mm();
+      add(tool, "block", facts);
+      return true;
+    }
     const int named = tool_named_in(lower_);
     if ((named != -1 && named != tool) || contains(lower_, "next")) return true;
     const CutterFacts facts = read_free_text(lower_, comment().inches);
@@ -209,6 +215,22 @@ class HintFinder {
     if (facts.kind == CutterKind::kUnnamed || !sized) return false;
     add(tool, "block", facts);
     return true;
+  }
+
+  /// "T1M6(D26)". Behind T6, D6 may as well be the number of its offset.
+  std::optional<double> diameter_alone() const {
+    std::string_view text = lower_;
+    bool sign = false;
+    for (const std::string_view diameter : {"d", "\xc3\xb8", "\xc3\x98"}) {
+      if (sign || !text.starts_with(diameter)) continue;
+      sign = true;
+      text.remove_prefix(diameter.size());
+    }
+    if (text.ends_with("mm") && !comment().inches) text = trim(text.substr(0, text.size() - 2));
+    if (!sign || text.empty() || !starts_with_number(text)) return std::nullopt;
+    const std::optional<double> value = parse_decimal(text);
+    if (!value || *value <= 0 || *value == comment().block_tool) return std::nullopt;
+    return value;
   }
 
   static bool starts_with_number(std::string_view text) {
@@ -312,8 +334,13 @@ class HintFinder {
     return true;
   }
 
-  /// TOOL DIAMETER: 0.1 mm | MSG, Change to Tool Dia = 0.1000 [||| Total drills for tool T1 = 10]
+  /// Tool-Diameter: 2.5mm (viaConstructor) | TOOL DIAMETER: 0.1 mm | MSG, Change to Tool Dia =
+  /// 0.1000 [||| Total drills for tool T1 = 10]
   bool read_flatcam() {
+    if (lower_.starts_with("tool-diameter:")) {
+      add(-1, "viaconstructor", read_free_text(lower_, comment().inches));
+      return true;
+    }
     const std::size_t at = lower_.find("tool dia");
     if (at == std::string::npos) return false;
     const bool line = at == 0 || std::string_view(lower_).starts_with("msg, change to tool dia");
@@ -344,6 +371,37 @@ class HintFinder {
     }
     add(tool, "freecad", facts);
     return true;
+  }
+
+  /// "Tool: 23 YG-1 .375 CoHSS stub drill": the number is the tool's, and a size is what can be
+  /// nothing else.
+  bool read_numbered_line() {
+    const std::optional<NumberedText> numbered = split_bare_number(lower_);
+    if (!numbered) return false;
+    if (comment().block_tool >= 0 && comment().block_tool != numbered->tool) return true;
+    // "Tool: 1 1/4 end mill": who knows which of the two.
+    constexpr int kMostInches = 4;
+    const std::size_t slash = numbered->rest.find_first_not_of("0123456789");
+    const bool mixed = slash != std::string_view::npos && slash > 0 && numbered->rest[slash] == '/';
+    if (mixed && numbered->tool <= kMostInches) return true;
+    CutterFacts facts = read_free_text(without_makers(numbered->rest), comment().inches);
+    if (facts.kind == CutterKind::kUnnamed) return true;
+    if (facts.diameter_is_whole) facts.diameter_mm.reset();
+    add(numbered->tool, "tool-line", facts);
+    return true;
+  }
+
+  /// Without "yg-1", or "yg-1 1/2-13 tap" would be one and a half inches.
+  static std::string without_makers(std::string_view text) {
+    std::string kept;
+    for (const std::string_view word : words_of(text)) {
+      const std::size_t dash = word.find('-');
+      const bool name = dash != std::string_view::npos && dash > 1 && is_letter(word[dash - 1]) &&
+                        dash + 1 < word.size() &&
+                        word.find_first_not_of("0123456789", dash + 1) == std::string_view::npos;
+      if (!name) kept.append(kept.empty() ? "" : " ").append(word);
+    }
+    return kept;
   }
 
   /// "Tool: D = 3.0 mm type END flutes 2" (Fabex), "TOOL: V-BIT {90 DEG 0.5\"}" (Vectric), "MSG,

@@ -48,10 +48,11 @@ struct ToolHint {
 std::vector<ToolHint> find_tool_hints(std::span<const CommentText> comments);
 
 /// A blank that comments describe: LinuxCNC 2.10's (WORKPIECE,BOX|CYLINDER|TUBE,...) (several add
-/// up) and CutViewer's (STOCK/BLOCK,...). SPEC text as --stock takes it, parts joined by " + ".
+/// up), CutViewer's (STOCK/BLOCK,...), Lathe EasyStep's (Rohteil ...). SPEC text as --stock takes
+/// it, parts joined by " + ".
 struct BlankHint {
   std::uint32_t line = 0;
-  std::string dialect;  ///< "workpiece" | "cutviewer"
+  std::string dialect;  ///< "workpiece" | "cutviewer" | "easystep"
   std::string spec;     ///< parse_blank() accepts it
 };
 std::optional<BlankHint> find_blank_hint(std::span<const CommentText> comments);

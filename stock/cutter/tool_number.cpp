@@ -6,6 +6,28 @@
 #include "base/text_scan.h"
 
 namespace kerf {
+namespace {
+
+/// V-bits are named by their angle: "60 v-bit".
+constexpr int kLeastVeeAngle_deg = 20;
+
+/// "6 mm", "3 flute", "10 x 25", "60 v-bit": what follows counts or measures something.
+bool is_measured(int number, std::string_view rest) {
+  if (rest.empty()) return false;
+  if (std::string_view("\"'*/\xc2\xb0\xe2").find(rest.front()) != std::string_view::npos)
+    return true;
+  const auto end = std::find_if_not(rest.begin(), rest.end(), is_letter);
+  const std::string_view word = rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
+  for (const std::string_view whole : {"mm", "cm", "in", "inch", "inches", "fl", "z", "x"}) {
+    if (word == whole) return true;
+  }
+  for (const std::string_view begin : {"millim", "dia", "deg", "flute", "tooth", "teeth"}) {
+    if (word.starts_with(begin)) return true;
+  }
+  return number >= kLeastVeeAngle_deg && word.starts_with("v") && !contains(rest, "deg");
+}
+
+}  // namespace
 
 std::string_view without_leading(std::string_view text, std::string_view characters) {
   const std::size_t first = text.find_first_not_of(characters);
@@ -49,6 +71,19 @@ std::optional<NumberedText> split_tool_number(std::string_view lower) {
     return std::nullopt;
   }
   numbered.rest = text;
+  return numbered;
+}
+
+std::optional<NumberedText> split_bare_number(std::string_view lower) {
+  constexpr std::string_view kWord = "tool:";
+  if (!lower.starts_with(kWord)) return std::nullopt;
+  std::string_view text = without_leading(lower.substr(kWord.size()), " \t");
+  const std::optional<int> tool = take_integer(text);
+  if (!tool || (!text.empty() && text.front() != ' ' && text.front() != '\t')) return std::nullopt;
+  NumberedText numbered;
+  numbered.tool = *tool;
+  numbered.rest = without_leading(text, " \t");
+  if (is_measured(*tool, numbered.rest)) return std::nullopt;
   return numbered;
 }
 

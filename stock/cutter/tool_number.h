@@ -24,6 +24,11 @@ struct NumberedText {
 /// Of lower-case text.
 std::optional<NumberedText> split_tool_number(std::string_view lower);
 
+/// "Tool: 23 YG-1 .375 stub drill": a whole number behind the bare word, that neither a unit nor a
+/// fraction nor "flute" or "V-bit" makes one of the tool's own. The separator is ' '.
+/// Of lower-case text.
+std::optional<NumberedText> split_bare_number(std::string_view lower);
+
 /// Tools that a text names: "t05", "tool 5", "tool no. 5", "tool #5". Of none: -1; of several:
 /// kSeveralTools.
 constexpr int kSeveralTools = -2;

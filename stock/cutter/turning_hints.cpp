@@ -24,7 +24,10 @@ std::optional<ToolHint> turning_hint(const CommentText& comment,
   const std::string lower = to_lower(text);
   int tool = comment.block_tool;
   std::string_view about = text;
-  const std::optional<NumberedText> numbered = split_tool_number(lower);
+  std::optional<NumberedText> numbered = split_tool_number(lower);
+  const std::optional<NumberedText> bare = split_bare_number(lower);
+  if (bare && tool >= 0 && bare->tool != tool) return std::nullopt;
+  if (bare && tool >= 0) numbered = bare;
   if (numbered) {
     tool = numbered->tool;
     about = text.substr(text.size() - numbered->rest.size());
@@ -39,6 +42,7 @@ std::optional<ToolHint> turning_hint(const CommentText& comment,
   const std::optional<ShapeText> shape = turning_shape_in_text(
       about, comment.inches, row == rows.end() ? TurningFacts{} : row->second);
   if (!shape || (!is_tools && !is_unmistakable(shape->shape))) return std::nullopt;
+  if (tool < 0 && shape->guessed) return std::nullopt;
   ToolHint hint;
   hint.tool = tool;
   hint.line = comment.line;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -115,6 +116,57 @@ ShapeText insert_of(const IsoCode& code, std::string_view lower, const TurningFa
             "its holder are assumed",
             facts.front_deg, *usual);
   }
+  return out;
+}
+
+/// The commonest size of a shape, with and without a clearance.
+struct UsualSize {
+  char shape;
+  const char* positive;
+  const char* negative;
+};
+constexpr std::array kUsualSizes{
+    UsualSize{'C', "09T304", "120408"}, UsualSize{'D', "11T304", "150608"},
+    UsualSize{'S', "09T308", "120408"}, UsualSize{'T', "16T304", "160408"},
+    UsualSize{'V', "160404", "160408"}, UsualSize{'W', nullptr, "080408"}};
+
+/// Of a word that ISO 1832 makes and no language does; nullptr: it is none.
+const char* usual_size(std::string_view letters) {
+  const auto row = std::find_if(kUsualSizes.begin(), kUsualSizes.end(),
+                                [&](const UsualSize& usual) { return usual.shape == letters[0]; });
+  const bool insert = row != kUsualSizes.end() &&
+                      std::string_view("MGU").find(letters[2]) != std::string_view::npos &&
+                      std::string_view("AGHMTW").find(letters[3]) != std::string_view::npos;
+  if (!insert) return nullptr;
+  if (letters[1] == 'N') return row->negative;
+  return std::string_view("BCDP").find(letters[1]) != std::string_view::npos ? row->positive
+                                                                             : nullptr;
+}
+
+/// "T1: DCMT": the letters of a designation alone.
+std::optional<IsoCode> unsized_in(std::string_view text) {
+  constexpr std::size_t kLetters = 4;
+  std::size_t end = 0;
+  for (std::size_t at = 0; at < text.size(); at = end + 1) {
+    end = at;
+    while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]))) ++end;
+    if (end - at != kLetters) continue;
+    std::string letters;
+    for (const char c : text.substr(at, kLetters)) letters += to_upper(c);
+    const char* const size = usual_size(letters);
+    if (size == nullptr) continue;
+    // A size that there is not is no reason to take another.
+    const std::size_t next = text.find_first_not_of(" \t", end);
+    if (next != std::string_view::npos && is_digit(text[next])) continue;
+    if (const Result<IsoCode> code = parse_iso_code(letters + size)) return *code;
+  }
+  return std::nullopt;
+}
+
+ShapeText unsized_insert(const IsoCode& code, std::string_view lower, const TurningFacts& facts) {
+  ShapeText out = insert_of(code, lower, facts);
+  out.guessed = true;
+  out.guess = trf("its size is not given, {} is assumed", code.text);
   return out;
 }
 
@@ -237,6 +289,11 @@ std::optional<ShapeText> turning_shape_in_text(std::string_view text, bool inche
   const std::string lower(trim(to_lower(text)));
   if (const std::optional<IsoCode> code = designation_in(text)) {
     return insert_of(*code, lower, facts);
+  }
+  // What the table says of nose and flanks is more than a guess.
+  const bool is_bare = facts.nose_diameter_mm <= 0 && !facts.has_flanks();
+  if (const std::optional<IsoCode> code = unsized_in(text); code && is_bare) {
+    return unsized_insert(*code, lower, facts);
   }
   const CutterFacts read = read_free_text(lower, inches);
   std::optional<ShapeText> found = thread_in(lower, read, facts);

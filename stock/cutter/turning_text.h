@@ -21,8 +21,8 @@ struct TurningFacts {
 /// A SHAPE of a turning tool, or of one that stands on the axis, that the text names for certain: a
 /// SHAPE itself, a designation by ISO 1832 or ANSI B212.4, a groove, parting or threading tool, a
 /// boring bar, a drill. What the text leaves out comes from the facts; what these leave out, too,
-/// is guessed and said (a width, a thread's angle). None: words that are no such tool, or only say
-/// what it does ("face", "turn"): then the row is all there is.
+/// is guessed and said (a width, a thread's angle, the size of an insert). None: words that are no
+/// such tool, or only say what it does ("face", "turn"): then the row is all there is.
 ///
 /// A SHAPE that is wrong comes back as it is written: who parses it says what is wrong. Reads
 /// English and German. Numbers without a unit are in `inches` or mm.

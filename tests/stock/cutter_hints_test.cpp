@@ -25,6 +25,12 @@ std::string hints_in(const std::vector<CommentText>& comments) {
 std::string mm(const char* text) { return hints_in({{1, text, false}}); }
 std::string inch(const char* text) { return hints_in({{1, text, true}}); }
 
+CommentText in_block(const char* text, int tool) {
+  CommentText comment{1, text, false};
+  comment.block_tool = tool;
+  return comment;
+}
+
 TEST(ToolHints, Fusion) {
   EXPECT_EQ(mm("T1 D=6. CR=0. - ZMIN=-29.5 - flat end mill"), "fusion T1 flat:6");
   EXPECT_EQ(mm("T12  D=6. CR=3. - ZMIN=-2 - BALL END MILL"), "fusion T12 ball:6");
@@ -68,6 +74,13 @@ TEST(ToolHints, FlatCam) {
   EXPECT_EQ(mm("MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"),
             "flatcam T-1 drill:0.8:118");
   EXPECT_EQ(mm("Compensated Tool Path. Diameter: 3.0"), "");
+}
+
+TEST(ToolHints, ViaConstructor) {
+  EXPECT_EQ(mm("Tool-Diameter: 2.5mm"), "viaconstructor T-1 flat:2.5 guessed");
+  EXPECT_EQ(inch("Tool-Diameter: 0.125"), "viaconstructor T-1 flat:3.175 guessed");
+  EXPECT_EQ(mm("Tool-Offset: 1.25mm none"), "");
+  EXPECT_EQ(mm("Tool-Mode: mill"), "");
 }
 
 TEST(ToolHints, CutViewer) {
@@ -169,6 +182,26 @@ TEST(ToolHints, LinesThatNameATool) {
   EXPECT_EQ(mm("MSG, optional stop"), "");
 }
 
+TEST(ToolHints, ALineThatBeginsWithTheToolsNumber) {
+  EXPECT_EQ(mm("Tool: 5 HSS drill"), "");
+  EXPECT_EQ(inch("Tool: 5 HSS drill"), "");
+  EXPECT_EQ(inch("Tool: 23 YG-1 .375 CoHSS stub drill"), "tool-line T23 drill:9.525:118");
+  EXPECT_EQ(inch("Tool: 24 YG-1 1/2-13 LH P-HSS spiral tap"), "tool-line T24 flat:12.7");
+  EXPECT_EQ(inch("Tool: 21  M4 #3 (.250) Center drill"), "tool-line T21 drill:6.35:118");
+  EXPECT_EQ(mm("Tool: 7 6mm end mill"), "tool-line T7 flat:6");
+  EXPECT_EQ(mm("Tool: 7 1/4 end mill"), "tool-line T7 flat:6.35");
+  EXPECT_EQ(mm("Tool: 3 V-bit 60 deg 12 mm"), "tool-line T3 vee:12:60");
+  EXPECT_EQ(mm("Tool: 5 drill of box 12"), "") << "12 may be anything";
+  EXPECT_EQ(mm("Tool: 1 1/4 end mill"), "") << "31.75 mm, or 6.35 of tool 1";
+  // What a unit, a fraction or its name makes a size is no number of a tool.
+  EXPECT_EQ(mm("Tool: 6 mm end mill"), "tool-line T-1 flat:6");
+  EXPECT_EQ(mm("Tool: 2 flute 3 mm end mill"), "tool-line T-1 flat:3");
+  EXPECT_EQ(mm("Tool: 6 dia end mill"), "tool-line T-1 flat:6");
+  EXPECT_EQ(mm("Tool: 60 v-bit 1/2\""), "tool-line T-1 vee:12.7:60");
+  EXPECT_EQ(hints_in({in_block("Tool: 5 HSS .25 drill", 5)}), "tool-line T5 drill:0.25:118");
+  EXPECT_EQ(hints_in({in_block("Tool: 5 HSS .25 drill", 4)}), "");
+}
+
 TEST(ToolHints, Prose) {
   EXPECT_EQ(inch(" and Cutter is assumed to be a 10mm ball nose "), "prose T-1 ball:10");
   EXPECT_EQ(mm("Ball cutter D=10.00"), "prose T-1 ball:10");
@@ -231,12 +264,6 @@ TEST(ToolHints, LengthsAreNoDiameters) {
   EXPECT_EQ(mm("T3 = 50 mm long 6 mm end mill, shank 8 mm"), "list T3 flat:6");
 }
 
-CommentText in_block(const char* text, int tool) {
-  CommentText comment{1, text, false};
-  comment.block_tool = tool;
-  return comment;
-}
-
 TEST(ToolHints, OfABlockBelongToItsTool) {
   EXPECT_EQ(hints_in({in_block("2\" Facemill", 2)}), "block T2 flat:50.8");
   EXPECT_EQ(hints_in({in_block("5 mm drill", 3)}), "block T3 drill:5:118");
@@ -247,6 +274,20 @@ TEST(ToolHints, OfABlockBelongToItsTool) {
   EXPECT_EQ(hints_in({in_block("then T5: 3 mm end mill", 2)}), "");
   EXPECT_EQ(hints_in({in_block("next: 3 mm end mill", 2)}), "");
   EXPECT_EQ(hints_in({in_block("Reset tool", 2)}), "");
+}
+
+TEST(ToolHints, ADiameterAloneOfABlock) {
+  EXPECT_EQ(hints_in({in_block("D26", 1)}), "block T1 flat:26 guessed");
+  EXPECT_EQ(hints_in({in_block("D6.5mm", 1)}), "block T1 flat:6.5 guessed");
+  EXPECT_EQ(hints_in({in_block("\xc3\x98"
+                               "8",
+                               1)}),
+            "block T1 flat:8 guessed");
+  EXPECT_EQ(hints_in({in_block("D12", 12)}), "") << "the number of an offset";
+  EXPECT_EQ(hints_in({in_block("D26 H1", 1)}), "");
+  EXPECT_EQ(hints_in({in_block("DN26", 1)}), "");
+  EXPECT_EQ(hints_in({in_block("D", 1)}), "");
+  EXPECT_EQ(mm("D26"), "") << "of no tool";
 }
 
 TEST(ToolHints, NearAreThoseThatNameNoToolAndAreNotAtAChange) {
@@ -292,6 +333,8 @@ TEST(ToolHints, CutAtEveryByteNeverCrashes) {
       "Operation: Outside Offset, 17_, T4: Plasma, 1.5 mm kerf",
       "MSG, Change tool bit to mill diameter 0.20000mm",
       "TOOL: V-BIT {90 DEG 0.5\"}",
+      "Tool-Diameter: 2.5mm",
+      "Tool: 24 YG-1 1/2-13 LH P-HSS spiral tap",
       "MSG, Change to Tool Dia = 0.8000 ||| Total drills for tool T1 = 10"};
   std::size_t hints = 0;
   for (const std::string text : texts) {
@@ -396,6 +439,23 @@ TEST(BlankHints, AnIncompleteWorkpieceIsNone) {
             "");
   EXPECT_EQ(blank_in({{1, "WORKPIECE,BOX,XMIN=0,YMIN=0,ZMIN=5,XMAX=1,YMAX=1,ZMAX=0", false}}), "");
   EXPECT_EQ(blank_in({{1, "go again to the center of the workpiece", false}}), "");
+}
+
+TEST(BlankHints, LatheEasyStep) {
+  const CommentText diameter{1, "Rohteil Aussendurchmesser: 50.000 mm", false};
+  const CommentText range{2, "Rohteil Z-Bereich: 1.000 bis -80.000 mm", false};
+  EXPECT_EQ(blank_in({diameter, range}), "easystep cylinder:0,0,-80:1:50");
+  EXPECT_EQ(blank_in({range, diameter}), "easystep cylinder:0,0,-80:1:50");
+  EXPECT_EQ(blank_in({diameter}), "");
+  EXPECT_EQ(blank_in({range}), "");
+  EXPECT_EQ(blank_in({diameter, {2, "Rohteil Z-Bereich: -80.000 bis 1.000 mm", false}}), "");
+  EXPECT_EQ(blank_in({{1, "Rohteil Aussendurchmesser: 2.000 mm", true},
+                      {2, "Rohteil Z-Bereich: 1.000 bis -8.000 mm", true}}),
+            "")
+      << "inches that are called mm";
+  EXPECT_EQ(blank_in({diameter, range, {3, "STOCK/BLOCK,100,50,20,50,25,20", false}}),
+            "cutviewer box:-50,-25,-20:50,25,0");
+  EXPECT_EQ(blank_in({{1, "WARN: Startpunkt X50.000 Z1.000 liegt im Rohteil", false}}), "");
 }
 
 TEST(BlankHints, CutAtEveryByteNeverCrashes) {

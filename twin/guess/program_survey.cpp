@@ -143,7 +143,7 @@ std::optional<ProgramSurvey::SheetGuess> ProgramSurvey::sheet(
 }
 
 Blank ProgramSurvey::blank() const {
-  if (turning_) return blank_.blank();
+  if (turning_ || blank_.is_round()) return blank_.blank();
   BlankGuess wide = blank_.guess();
   for (const ToolGuess& guess : tools(wide.blank().bounds_mm().max.z)) {
     if (guess.of_known_size) continue;
@@ -151,6 +151,12 @@ Blank ProgramSurvey::blank() const {
     if (cutter) wide.widen(open_tools_.at(guess.tool).bounds_mm(), cutter->radius_mm());
   }
   return wide.blank();
+}
+
+std::string ProgramSurvey::blank_reason() const {
+  if (turning_) return tr("a bar as wide as it is turned");
+  if (blank_.is_round()) return tr("a bar about X, since A goes all the way round");
+  return trf("the feed moves plus {:g} mm", wishes_.margin_mm);
 }
 
 std::vector<ToolGuess> ProgramSurvey::tools(double top_mm) const {

@@ -68,6 +68,8 @@ class ProgramSurvey {
                                   std::span<const TorchMaterial> materials) const;
   /// The blank that fits, wide enough for the tools of tools().
   Blank blank() const;
+  /// What blank() goes by, as stock-guessed says it.
+  std::string blank_reason() const;
   /// blank() is a skin over what a pen draws or a knife cuts (CheckOptions::is_drawn).
   bool is_drawn() const { return !spindle_started_ && blank_.guess().is_skin(); }
   /// One shape for each tool of which nothing is known: of a box at `top_mm`. And a drill for each

@@ -342,6 +342,10 @@ std::string stock_spec(const Blank& blank, LengthUnit unit) {
   if (!blank.state_file.empty() || blank.sheet || blank.bodies.size() != 1) return {};
   const BlankBody& body = blank.bodies[0];
   const Box& b = body.bounds_mm;
+  if (body.kind == BlankBody::Kind::kCylinder && body.axis == 'x') {
+    return fmt::format("cylinder:{},{},{}:{}:{}:x", number(b.min.x), number(body.center_mm.y),
+                       number(body.center_mm.z), number(b.max.x), number(body.diameter_mm));
+  }
   if (body.kind == BlankBody::Kind::kCylinder && body.axis == 'z') {
     return fmt::format("cylinder:{},{},{}:{}:{}", number(body.center_mm.x),
                        number(body.center_mm.y), number(b.min.z), number(b.max.z),

@@ -92,8 +92,8 @@ double suited_cell_mm(const Box& blank_mm, double finest_mm);
 /// What the shallowest cuts that are looked for are like: half a width at this depth, mm.
 inline constexpr double kShallowCut_mm = 0.2;
 
-/// "box:-5,-5,-10:105,65,0", what --stock takes. Boxes, cylinders along Z and rectangular sheets
-/// alone; empty for other blanks. Its numbers are in `unit`.
+/// "box:-5,-5,-10:105,65,0", what --stock takes. Boxes, cylinders along X or Z and rectangular
+/// sheets alone; empty for other blanks. Its numbers are in `unit`.
 std::string stock_spec(const Blank& blank, LengthUnit unit = LengthUnit::kMm);
 
 }  // namespace kerf

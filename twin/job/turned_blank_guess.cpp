@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kAlong_mm = 1e-6;
 
+/// As fine as a person writes it. Whole millimetres would lay a skin over every inch program's bar,
+/// and its sound traverses would touch it.
+double shown_mm(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
+
 }  // namespace
 
 void TurnedBlankGuess::add(const Motion& m) {
@@ -46,9 +50,9 @@ Blank TurnedBlankGuess::blank() const {
   BlankBody bar;
   bar.kind = BlankBody::Kind::kCylinder;
   bar.axis = 'z';
-  bar.diameter_mm = std::ceil(2 * radius - kAlong_mm);
+  bar.diameter_mm = shown_mm(2 * radius);
   const double r = bar.diameter_mm / 2;
-  bar.bounds_mm = Box{{-r, -r, floor}, {r, r, std::ceil(top - kAlong_mm)}};
+  bar.bounds_mm = Box{{-r, -r, floor}, {r, r, shown_mm(top)}};
   Blank blank;
   blank.bodies.push_back(bar);
   return blank;

@@ -13,12 +13,12 @@ class TurnedBlankGuess {
   explicit TurnedBlankGuess(double margin_mm) : margin_mm_(margin_mm) {}
 
   void add(const Motion& motion);
-  /// A cylinder about Z in whole mm:
+  /// A cylinder about Z, to a thousandth of a mm:
   ///   diameter   twice the farthest that a feed along Z, or a slanted one, is from the axis; where
   ///              there are none, of all feeds
   ///   top        the highest place where a feed goes straight towards the axis, to within half of
   ///              the bar; Z0 where there is none and the feeds go below it
-  ///   floor      the lowest feed less the margin, and never above the top
+  ///   floor      the lowest feed less the margin, in whole mm, and never above the top
   Blank blank() const;
   bool has_moves() const { return moves_; }
 

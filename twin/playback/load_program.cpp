@@ -216,8 +216,7 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
     front.blank_origin = tr("guessed");
     front.blank_guessed = true;
     front.is_drawn = survey.is_drawn();
-    front.guess_reason = front.is_turned() ? std::string(tr("a bar as wide as it is turned"))
-                                           : trf("the feed moves plus {:g} mm", options.margin_mm);
+    front.guess_reason = survey.blank_reason();
     if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
       remarks.add(std::move(*warning));
     }

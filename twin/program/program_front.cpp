@@ -178,14 +178,22 @@ void BlankSurvey::add(std::span<const Motion> motions, const MotionMoves& moves)
     if (m.length.displaces) {
       // The blank is where the program works, not where a tool of another length does.
       guess_.add(as_programmed(m), radius_mm_);
+      round_.add(as_programmed(m), {}, radius_mm_);
     } else if (moves.is_upright(m)) {
       guess_.add(m, radius_mm_);
+      round_.add(m, {}, radius_mm_);
     } else {
       divided_.clear();
       moves.path()->moves_of(m, kGuessReach_mm, 0, divided_);
       guess_.add(m, divided_, radius_mm_);
+      round_.add(m, divided_, radius_mm_);
     }
   }
+}
+
+Blank BlankSurvey::blank() const {
+  if (turning_) return bar_.blank();
+  return round_.blank().value_or(guess_.blank());
 }
 
 ProcessPointer process_of(const SessionOptions& options, const ProgramFront& front) {

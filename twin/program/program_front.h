@@ -15,6 +15,7 @@
 #include "twin/findings/finding.h"
 #include "twin/findings/outcome.h"
 #include "twin/job/blank_choice.h"
+#include "twin/job/round_blank_guess.h"
 #include "twin/job/tool_use.h"
 #include "twin/job/tools.h"
 #include "twin/job/turned_blank_guess.h"
@@ -99,17 +100,21 @@ class BlankSurvey {
       : turning_(tools.turning),
         guess_(margin_mm),
         bar_(margin_mm),
+        round_(margin_mm),
         resolver_(std::move(tools), nullptr) {}
 
   /// `moves`: how the machine moves.
   void add(std::span<const Motion> motions, const MotionMoves& moves);
-  Blank blank() const { return turning_ ? bar_.blank() : guess_.blank(); }
+  Blank blank() const;
+  /// blank() is a bar about X: it goes round and round under the tool.
+  bool is_round() const { return !turning_ && round_.blank(); }
   const BlankGuess& guess() const { return guess_; }
 
  private:
   bool turning_;
   BlankGuess guess_;
   TurnedBlankGuess bar_;
+  RoundBlankGuess round_;
   ToolResolver resolver_;
   int tool_ = -1;
   double radius_mm_ = 0;  ///< of that tool

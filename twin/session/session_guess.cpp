@@ -74,9 +74,7 @@ bool Session::take_guesses(const ProgramSurvey& survey, Diagnostics& diagnostics
     front_.blank_origin = tr("guessed");
     front_.blank_guessed = true;
     front_.is_drawn = survey.is_drawn();
-    front_.guess_reason = front_.is_turned()
-                              ? std::string(tr("a bar as wide as it is turned"))
-                              : trf("the feed moves plus {:g} mm", options_.margin_mm);
+    front_.guess_reason = survey.blank_reason();
     if (auto warning = survey.warning(*front_.blank, front_.guess_reason)) {
       report_.findings.add(std::move(*warning));
     }

@@ -193,8 +193,8 @@ TEST(BlankGuessSteps, TheFirstLevelCutsAsDeepAsTheOthers) {
 }
 
 TEST(StockSpec, IsWhatStockTakes) {
-  for (const char* spec :
-       {"box:-5,-5.5,-10:105,65,0.5", "sheet:0,0:600,400:3", "cylinder:0,0,-60:0:40"}) {
+  for (const char* spec : {"box:-5,-5.5,-10:105,65,0.5", "sheet:0,0:600,400:3",
+                           "cylinder:0,0,-60:0:40", "cylinder:-8,1,0:28:40.5:x"}) {
     const Result<Blank> blank = parse_blank(spec);
     ASSERT_TRUE(blank);
     EXPECT_EQ(stock_spec(*blank), spec);

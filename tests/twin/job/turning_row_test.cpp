@@ -247,6 +247,35 @@ TEST(TurningHints, TheTableSaysWhatTheyLeaveOut) {
   EXPECT_EQ(hints[2].shape, "iso:CCMT09T308:R");
 }
 
+TEST(TurningHints, InsertsWithoutASizeAreGuessed) {
+  const auto shape = [](const char* text, int block_tool = -1) {
+    CommentText comment;
+    comment.text = text;
+    comment.block_tool = block_tool;
+    const std::vector<ToolHint> hints = hints_of({comment});
+    if (hints.size() != 1) return std::string();
+    EXPECT_TRUE(hints[0].shape_guessed) << text;
+    EXPECT_NE(hints[0].guess.find("size"), std::string::npos) << hints[0].guess;
+    return std::to_string(hints[0].tool) + " " + hints[0].shape;
+  };
+  EXPECT_EQ(shape("Step 3: face | T1: DCMT Aussendrehen"), "1 iso:DCMT11T304:R");
+  EXPECT_EQ(shape("T2: CCMT Innendrehen"), "2 iso:CCMT09T304:R:orient=3");
+  EXPECT_EQ(shape("vcmt", 11), "11 iso:VCMT160404:R");
+  EXPECT_EQ(shape("T3 - WNMG left"), "3 iso:WNMG080408:L");
+  EXPECT_EQ(shape("DCMT Aussendrehen"), "") << "of no tool";
+  EXPECT_EQ(shape("T1: DCMT 99 finish"), "") << "there is no such size";
+  EXPECT_EQ(shape("T1: WCMT"), "");
+  EXPECT_EQ(shape("T1: come down then stop"), "");
+}
+
+TEST(TurningHints, TheTableSaysMoreThanAnInsertWithoutASize) {
+  EXPECT_FALSE(turning_remark_shape(row_of("T1 P1 D0.8 I85 J25 Q2 ;DCMT finish\n")));
+  const std::optional<ShapeText> bare = turning_remark_shape(row_of("T1 P1 Q3 ;DCMT finish\n"));
+  ASSERT_TRUE(bare);
+  EXPECT_EQ(bare->shape, "iso:DCMT11T304:R:orient=3");
+  EXPECT_TRUE(bare->guessed);
+}
+
 TEST(TurningHints, WordsAboutTheWorkAreNone) {
   for (const char* const text :
        {"t1 is for facing and left turning, t4 is threading tool, t9 parting", "thread M20x1.5",
