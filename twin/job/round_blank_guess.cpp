@@ -14,7 +14,7 @@ constexpr double kWholeTurn_deg = 360 - 1e-6;
 constexpr double kSameLine_mm = 1e-3;
 constexpr double kLeastDiameter_mm = 1;
 
-double from_axis_mm(const Vec3& at_mm) { return std::hypot(at_mm.y, at_mm.z); }
+double from_axis_mm(const Vec3& at_mm) { return std::sqrt(at_mm.y * at_mm.y + at_mm.z * at_mm.z); }
 
 bool turns_about_x(const Motion& m, std::span<const CutMove> moves) {
   const auto fits = [&](const CutMove& move) {
