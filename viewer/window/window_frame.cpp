@@ -39,6 +39,16 @@ constexpr Seconds kFilmInterval{0.1};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
+// From Dear ImGui 1.92 on letters are made as they are needed, and their texture follows by itself.
+#if IMGUI_VERSION_NUM >= 19200
+/// Graphics memory of the letters.
+std::size_t letter_bytes() {
+  const ImTextureData* const letters = ImGui::GetIO().Fonts->TexData;
+  return letters == nullptr ? 0 : static_cast<std::size_t>(letters->GetSizeInBytes());
+}
+
+void renew_letters() {}
+#else
 /// Graphics memory of the letters.
 std::size_t letter_bytes() {
   constexpr std::size_t kBytesPerPixel = 4;  // RGBA8, as Dear ImGui's OpenGL part makes it
@@ -46,6 +56,12 @@ std::size_t letter_bytes() {
   return kBytesPerPixel * static_cast<std::size_t>(atlas.TexWidth) *
          static_cast<std::size_t>(atlas.TexHeight);
 }
+
+void renew_letters() {
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+#endif
 
 }  // namespace
 
@@ -276,8 +292,7 @@ void Window::Impl::set_looks() {
     fonts_language_ = spoken;
     // Letters are drawn for their size, not blown up.
     fonts_ = load_fonts(scale_, fonts_language_);
-    ImGui_ImplOpenGL3_DestroyFontsTexture();
-    ImGui_ImplOpenGL3_CreateFontsTexture();
+    renew_letters();
   }
   is_light_ = is_light;
   set_style(scale_, is_light_);
