@@ -33,9 +33,9 @@ class FileView {
         index_(index),
         corner_(ImGui::GetCursorScreenPos()),
         size_(ImGui::GetContentRegionAvail()),
-        row_px_(context.fonts.mono->FontSize + std::round(2.0f * context.scale)),
+        row_px_(height_px(*context.fonts.mono) + std::round(2.0f * context.scale)),
         digit_px_(
-            context.fonts.mono->CalcTextSizeA(context.fonts.mono->FontSize, 1e6f, 0.0f, "0").x) {
+            context.fonts.mono->CalcTextSizeA(height_px(*context.fonts.mono), 1e6f, 0.0f, "0").x) {
     const auto digits = static_cast<float>(std::to_string(file.line_count()).size());
     gutter_px_ = kDotRoom_px * context.scale + digits * digit_px_ + 0.5f * digit_px_;
     text_px_ = gutter_px_ + digit_px_;

@@ -55,7 +55,7 @@ void draw_positions(const PanelContext& context) {
     ImGui::TextColored(theme::kText, "%s", axis.is_diameter ? kDiameterSign : name);
     ImGui::TableNextColumn();
     figure(figure_of(axis.work), theme::kReadout);
-    const float drop = context.fonts.readout->FontSize - context.fonts.mono->FontSize;
+    const float drop = height_px(*context.fonts.readout) - height_px(*context.fonts.mono);
     ImGui::PopFont();
     ImGui::PushFont(context.fonts.mono);
     ImGui::TableNextColumn();

@@ -33,6 +33,18 @@ std::string font_file(const char* name) {
 /// Pairs of first and last letter, ended by 0, as Dear ImGui has them.
 using LetterRanges = ImVector<ImWchar>;
 
+/// Letters are drawn for all of the texts at once; from Dear ImGui 1.92 on one by one, out of files
+/// that it keeps for it.
+#if IMGUI_VERSION_NUM >= 19200
+void build(ImFontAtlas&) {}
+#else
+void build(ImFontAtlas& atlas) {
+  atlas.Build();
+  // Here, while their ranges live, and since a Chinese font has 17 MB.
+  atlas.ClearInputData();
+}
+#endif
+
 ImFontConfig font_config(float height_px, const LetterRanges& letters) {
   ImFontConfig config;
   // Whole pixels: letters stay sharp, and a column of figures stays a column.
@@ -40,7 +52,7 @@ ImFontConfig font_config(float height_px, const LetterRanges& letters) {
   config.OversampleV = 1;
   config.PixelSnapH = true;
   config.SizePixels = std::round(height_px);
-  config.GlyphRanges = letters.Data;
+  if (IMGUI_VERSION_NUM < 19200) config.GlyphRanges = letters.Data;
   return config;
 }
 
@@ -147,10 +159,16 @@ Fonts load_fonts(float scale, const std::string& language) {
   // Figures and names of axes.
   fonts.readout = add_font("DejaVuSansMono.ttf", kReadoutHeight_px * scale, ranges);
   ImGui::GetIO().FontDefault = fonts.text;
-  atlas->Build();
-  // Here, while `ranges` lives, and since a Chinese font has 17 MB.
-  atlas->ClearInputData();
+  build(*atlas);
   return fonts;
+}
+
+float height_px(const ImFont& font) {
+#if IMGUI_VERSION_NUM >= 19200
+  return font.LegacySize;
+#else
+  return font.FontSize;
+#endif
 }
 
 void set_style(float scale, bool is_light) {

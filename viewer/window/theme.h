@@ -22,6 +22,9 @@ struct Fonts {
 /// of a program, are shown as `?`. Takes 10 to 100 ms.
 Fonts load_fonts(float scale, const std::string& language);
 
+/// As it was loaded.
+float height_px(const ImFont& font);
+
 /// Colours and distances, for this scale.
 void set_style(float scale, bool is_light);
 
