@@ -95,6 +95,7 @@ KERF_GLFW_1(void, glfwSwapInterval, int)
 // Monitors.
 KERF_GLFW_1(GLFWmonitor**, glfwGetMonitors, int*)
 KERF_GLFW_5(void, glfwGetMonitorWorkarea, GLFWmonitor*, int*, int*, int*, int*)
+KERF_GLFW_3(void, glfwGetMonitorContentScale, GLFWmonitor*, float*, float*)
 KERF_GLFW_1(GLFWmonitorfun, glfwSetMonitorCallback, GLFWmonitorfun)
 
 // Events.

@@ -39,7 +39,8 @@ constexpr Seconds kFilmInterval{0.1};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
-// From Dear ImGui 1.92 on letters are made as they are needed, and their texture follows by itself.
+// From Dear ImGui 1.92 on letters are made as they are needed, and go into their texture when a frame
+// is drawn; here before, since what is drawn is looked at first.
 #if IMGUI_VERSION_NUM >= 19200
 /// Graphics memory of the letters.
 std::size_t letter_bytes() {
@@ -48,6 +49,12 @@ std::size_t letter_bytes() {
 }
 
 void renew_letters() {}
+
+void send_letters() {
+  for (ImTextureData* const texture : *ImGui::GetDrawData()->Textures) {
+    if (texture->Status != ImTextureStatus_OK) ImGui_ImplOpenGL3_UpdateTexture(texture);
+  }
+}
 #else
 /// Graphics memory of the letters.
 std::size_t letter_bytes() {
@@ -61,6 +68,8 @@ void renew_letters() {
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
+
+void send_letters() {}
 #endif
 
 }  // namespace
@@ -340,6 +349,7 @@ Done Window::Impl::draw() {
     move_camera();
     draw_panels(room, display);
     ImGui::Render();
+    send_letters();
     panel_change_.find(*ImGui::GetDrawData(), window_px, &changed);
   }
   camera_.set_perspective(settings_.is_perspective);
