@@ -39,8 +39,8 @@ constexpr Seconds kFilmInterval{0.1};
 /// How often it is looked whether an age that is shown reads differently by now.
 constexpr Seconds kAgeInterval{0.1};
 
-// From Dear ImGui 1.92 on letters are made as they are needed, and go into their texture when a frame
-// is drawn; here before, since what is drawn is looked at first.
+// From Dear ImGui 1.92 on letters are made as they are needed, and go into their texture when a
+// frame is drawn; here before, since what is drawn is looked at first.
 #if IMGUI_VERSION_NUM >= 19200
 /// Graphics memory of the letters.
 std::size_t letter_bytes() {
