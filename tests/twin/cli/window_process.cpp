@@ -104,6 +104,8 @@ void WindowedKerf::open_file(const std::string& path) const {
   const double before_s = process().cpu_s();
   key("ctrl+o");
   EXPECT_TRUE(wait_for([&] { return process().cpu_s() > before_s + kBegins_s; }, kPatience));
+  // What it had still to draw of before may have been that.
+  std::this_thread::sleep_for(std::chrono::seconds(2));
   EXPECT_TRUE(wait_for(
       [&] {
         const double drawing_s = process().cpu_s();
