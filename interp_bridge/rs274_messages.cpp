@@ -13,6 +13,7 @@
 #include "base/translate.h"
 #include "interp_bridge/program_prepare.h"
 #include "interp_bridge/source_text.h"
+#include "interp_bridge/word_scanner.h"
 
 namespace kerf {
 namespace {
@@ -70,40 +71,27 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
-/// Where the number of the block's word begins, outside of its comments; npos: it has none.
-std::size_t find_word(std::string_view block, char letter) {
-  bool in_comment = false;
-  for (std::size_t i = 0; i < block.size() && (in_comment || block[i] != ';'); ++i) {
-    if (block[i] == '(' || block[i] == ')') in_comment = block[i] == '(';
-    if (in_comment || to_lower(block[i]) != letter) continue;
-    return std::min(block.find_first_not_of(" \t", i + 1), block.size());
-  }
-  return block.npos;
-}
-
 /// An arc as some write it, with all three words of its centre: G2 X10 Y0 I5 J0 K0.
 bool has_idle_k(std::string_view block) {
-  const std::size_t at = find_word(block, 'k');
-  if (at == block.npos) return false;
-  double k = 1;
-  const std::size_t sign = at < block.size() && block[at] == '+' ? 1 : 0;
-  std::from_chars(block.data() + at + sign, block.data() + block.size(), k);
-  const auto has = [&](char letter) { return find_word(block, letter) != block.npos; };
-  return k == 0 && (has('j') || has('y') || !has('z'));
+  WordScanner words(block);
+  char letter = 0;
+  std::optional<double> number;
+  bool idle = false, has_y = false, has_z = false;
+  while (words.next(letter, number)) {
+    if (letter == 'k') idle = number == 0;
+    has_y = has_y || letter == 'y' || letter == 'j';
+    has_z = has_z || letter == 'z';
+  }
+  return idle && (has_y || !has_z);
 }
 
-/// A block has a G code, outside of its comments: "G0 G91 G28 Z0" has G28.
+/// "G0 G91 G28 Z0" has G28.
 bool has_g_code(std::string_view block, int code) {
-  bool in_comment = false;
-  for (std::size_t i = 0; i < block.size() && (in_comment || block[i] != ';'); ++i) {
-    if (block[i] == '(' || block[i] == ')') in_comment = block[i] == '(';
-    if (in_comment || (block[i] != 'G' && block[i] != 'g')) continue;
-    const std::size_t first = block.find_first_not_of(" \t", i + 1);
-    if (first == block.npos) return false;
-    int found = -1;
-    const char* const end = block.data() + block.size();
-    const auto [next, error] = std::from_chars(block.data() + first, end, found);
-    if (error == std::errc() && found == code && (next == end || *next != '.')) return true;
+  WordScanner words(block);
+  char letter = 0;
+  std::optional<double> number;
+  while (words.next(letter, number)) {
+    if (letter == 'g' && number == code) return true;
   }
   return false;
 }

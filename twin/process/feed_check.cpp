@@ -47,8 +47,7 @@ void FeedCheck::check_thread(const Motion& m, const TimedStep& step) {
   finding.tool = m.tool;
   finding.text =
       trf("the thread's {:g} mm a turn at {:.0f} rpm ask for {:.0f} mm/min, and the axes do "
-          "{:.0f}: they "
-          "cannot follow the spindle{}",
+          "{:.0f}: they cannot follow the spindle{}",
           m.feed_mm_per_min, m.spindle_rpm, step.programmed_mm_per_min, step.allowed_mm_per_min,
           limits_known_ ? "" : tr(" (of an assumed machine)"));
   finding.hint = trf("at most S{:.0f}", std::floor(m.spindle_rpm * step.allowed_mm_per_min /
