@@ -29,12 +29,12 @@ constexpr int kSessions = 3;
 constexpr double kSeconds = 2.5;
 constexpr double kPeriod_us = 1000;
 
-/// Without a realtime kernel, and beside whatever else a computer of tests does, the worst cycles
-/// are those of the other programs, and a longest time (servo-thread.tmax) or a 99 % compares luck
-/// with luck. The median and the 90 % of some 2500 cycles are repeatable; rounds that differ by
-/// more than that come from load that changes meanwhile, so the median over rounds is taken, of
-/// each with kerf against the one beside it without.
-/// What is left of noise reaches 1.3 where compilers run beside it.
+/// Beside whatever else a computer of tests does, the worst cycles are those of the other programs
+/// (interrupts, a host that takes its processor away), and a longest time (servo-thread.tmax) or a
+/// 99 % compares luck with luck. The median and the 90 % of some 2500 cycles are repeatable; rounds
+/// that differ by more than that come from load that changes meanwhile, so the median over rounds
+/// is taken, of each with kerf against the one beside it without. Four programs that compute
+/// without end change it by 0.02; 1.5 leaves room for worse hosts.
 constexpr double kNoise = 1.5;
 /// Differences below this are none: a cycle is 1000 us, and the clock's own interrupt takes so
 /// long.
@@ -149,6 +149,8 @@ class Neighbour : public ::testing::Test {
   }
 
   void compare(const std::string& name, std::vector<double> Turn::*values, double share) {
+    if (text_of(session().folder / "realtime").find("SCHED_FIFO") == std::string::npos)
+      GTEST_SKIP() << "LinuxCNC's threads may not be realtime ones here";
     bool is_quiet = false;
     compare_turns(name, values, share, is_quiet);
     while (!is_quiet && !HasFatalFailure() && session().may_run()) {
