@@ -26,7 +26,7 @@ struct Screen {
   std::string_view location;  ///< empty: it has no EMBED_TAB_LOCATION
 };
 constexpr std::array kScreens{Screen{"axis", ""}, Screen{"gmoccapy", "ntb_preview"},
-                              Screen{"qtdragon", "tabWidget_utilities"}};
+                              Screen{"qtdragon", "stackedWidget_mainTab"}};
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;

@@ -5,6 +5,7 @@ for kerf's leave, starts it, waits for its end, and closes the screen. Writes sc
   load_to_ok_s  seconds from opening the program to kerf.program-ok; null: it never came
   dry_run_s     seconds until a kerf run of the program was there
   findings, time_left_s   the pins when it was loaded
+  tab_seen      whether kerf's window can be seen while the program runs, once its tab was clicked at KERF_TAB_AT
   program_s     that it took; null: it did not come to its end
   restarted_s   seconds from a crash of what is in the tab to kerf.alive again
   edit_to_off_s seconds from a change of the file on the disk until the leave is gone
@@ -44,6 +45,12 @@ def show_tab():
     place = os.environ.get("KERF_TAB_AT")
     if place:
         subprocess.run(["xdotool", "mousemove", *place.split(","), "click", "1"], check=False)
+
+
+def is_seen():
+    """A window of kerf's is mapped, and all that it lies in."""
+    done = subprocess.run(["xdotool", "search", "--onlyvisible", "--class", "kerf"], capture_output=True, check=False)
+    return done.stdout.strip() != b""
 
 
 def click_through(places):
@@ -100,7 +107,10 @@ def main():
         machine.command.wait_complete()
         machine.command.auto(drive.linuxcnc.AUTO_RUN, 0)
         result["started"] = drive.wait_until("the start", lambda: machine.poll().interp_state != drive.linuxcnc.INTERP_IDLE, 5)
-        time.sleep(4)
+        time.sleep(3)
+        show_tab()
+        time.sleep(1)
+        result["tab_seen"] = is_seen()
         picture("running.png")
         result["program_s"] = since(begin, machine.is_done, 120)
         time.sleep(2)

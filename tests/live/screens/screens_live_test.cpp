@@ -43,6 +43,7 @@ TEST_P(ScreensLiveTest, TheProgramIsDryRunAndFollowedAndACrashIsMended) {
   EXPECT_EQ(result["findings"], "1");
   EXPECT_NEAR(std::stod(result["time_left_s"].get<std::string>()), 34, 3);
   EXPECT_TRUE(result.value("started", false));
+  EXPECT_TRUE(result.value("tab_seen", false)) << "while the program runs";
   ASSERT_TRUE(result["program_s"].is_number());
   EXPECT_GT(result["program_s"].get<double>(), 25);
   ASSERT_TRUE(result["edit_to_off_s"].is_number());

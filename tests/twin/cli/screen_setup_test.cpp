@@ -44,7 +44,7 @@ TEST(ScreenSetup, GmoccapyAndQtDragonAreToldWhere) {
   const std::string gmoccapy = with("[DISPLAY]\nDISPLAY = gmoccapy -d\n");
   EXPECT_NE(gmoccapy.find("\nEMBED_TAB_LOCATION = ntb_preview\n"), std::string::npos) << gmoccapy;
   const std::string qt = with("[DISPLAY]\nDISPLAY = qtvcp -d qtdragon_hd\n");
-  EXPECT_NE(qt.find("\nEMBED_TAB_LOCATION = tabWidget_utilities\n"), std::string::npos) << qt;
+  EXPECT_NE(qt.find("\nEMBED_TAB_LOCATION = stackedWidget_mainTab\n"), std::string::npos) << qt;
 }
 
 TEST(ScreenSetup, TwiceIsOnceAndUndoneIsAsBefore) {

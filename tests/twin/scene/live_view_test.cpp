@@ -326,6 +326,12 @@ TEST_F(LiveViewTest, TheProgramsPathTakesThePlaceOfTheTrail) {
   ASSERT_TRUE(until([&] { return known_.timeline && known_.program && path_.size() == 1; }));
   EXPECT_GT(known_.timeline->duration_s, 0);
   ASSERT_TRUE(until([&] { return path_[0]->vertices.size() == 4; }));
+  LiveStatus home = at({0, 0, 80});
+  home.t_s = 6.2;
+  home.removed_mm3 = 7;
+  frame(home);
+  ASSERT_TRUE(moment([](const Moment& m) { return m.removed_mm3 == 7; }));
+  EXPECT_EQ(known_.moment->time_s, 0) << "watched for 6.2 s, and the program has not begun";
   LiveStatus status = at({20, 10, -2});
   status.place.followed = true;
   status.place.program_s = known_.timeline->duration_s + 1;
