@@ -431,7 +431,8 @@ std::shared_ptr<const Moment> LiveView::moment_now() {
   if (status.state == LiveState::kEnded) moment->state = PlayState::kEnded;
   moment->source = freshness_of(status.state);
   moment->source_age_s = status.age_s + seconds(Clock::now() - status_at_);
-  // Off its path, and before it has begun, the program stands where it was: the bar is as long as it.
+  // Off its path, and before it has begun, the program stands where it was: the bar is as long as
+  // it.
   moment->time_s = program_ ? place.program_s : status.t_s;
   moment->line = static_cast<int>(place.source.line);
   moment->file = static_cast<int>(place.source.file);
