@@ -3,18 +3,9 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/process/tool_tells.h"
 
 namespace kerf {
-namespace {
-
-/// Of T0101 and T1212, as Fanuc's lathes have tool and offset in one number; 0: it is none.
-int tool_with_offset(int number) {
-  constexpr int kPlaces = 100;
-  const int tool = number / kPlaces;
-  return tool < kPlaces && tool == number % kPlaces ? tool : 0;
-}
-
-}  // namespace
 
 void ToolChangeCheck::feeds(const Motion& m, const TimedStep& step, int tool) {
   if (m.selected_at != waiting_.last) {
@@ -44,12 +35,7 @@ void ToolChangeCheck::tell_not_changed() {
   finding.tool = waiting_.used;
   finding.text = trf("T{} is selected, and no M6 follows: tool {} cuts on, from line {}",
                      waiting_.tool, waiting_.used, waiting_.first.line);
-  if (const int tool = tool_with_offset(waiting_.tool); tool > 0) {
-    finding.hint =
-        trf("LinuxCNC reads tool {} there; if it is meant for tool {} with offset {}, as on other "
-            "controls: T{} M6 G43",
-            waiting_.tool, tool, tool, tool);
-  }
+  finding.hint = hint_of_number(waiting_.tool);
   log_.add(std::move(finding));
 }
 

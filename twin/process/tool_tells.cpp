@@ -23,6 +23,16 @@ ToolUse use_of(const ResolvedTool& tool) {
   return use;
 }
 
+std::string hint_of_number(int number) {
+  constexpr int kPlaces = 100;
+  const int tool = number / kPlaces;
+  if (tool <= 0 || tool >= kPlaces || tool != number % kPlaces) return {};
+  return trf(
+      "LinuxCNC reads tool {} there; if it is meant for tool {} with offset {}, as on other "
+      "controls: T{} M6 G43",
+      number, tool, tool, tool);
+}
+
 void tell_tool(const ResolvedTool& tool, const Motion& m, FindingLog& log) {
   if (!tool.cutter) return;
   const std::string& shape = tool.cutter->spec();
@@ -55,6 +65,7 @@ void tell_tool(const ResolvedTool& tool, const Motion& m, FindingLog& log) {
             : trf("tool {} is taken for {} ({}), and that is a guess: {} (--tool {}=SHAPE "
                   "says better)",
                   tool.number, shape, tool.origin, tool.guess, std::max(1, tool.number));
+    if (tool.from_moves) finding.hint = hint_of_number(tool.number);
     log.add(finding);
   }
 }
@@ -90,6 +101,7 @@ void tell_undefined(const ResolvedTool& tool, const Motion& m, const TimedStep& 
     finding.text =
         trf("nothing is known of tool {}; its moves do not cut (--tool {}=SHAPE describes it)",
             m.tool, m.tool);
+    finding.hint = hint_of_number(m.tool);
   }
   log.add(std::move(finding));
 }

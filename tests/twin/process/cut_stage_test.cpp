@@ -1,5 +1,6 @@
 #include "twin/process/cut_stage.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "stock/zmap/zmap.h"
@@ -249,6 +250,22 @@ TEST(CutStage, UnknownToolsDoNotCutAndSaySoOnce) {
             "nothing is known of tool 3; its moves do not cut (--tool 3=SHAPE describes it)");
   EXPECT_EQ(shop.findings()[0].severity, Severity::kError);
   EXPECT_EQ(shop.removed_mm3(), 0);
+}
+
+TEST(CutStage, ToolAndOffsetInOneNumberAreHintedAt) {
+  for (const auto& [number, tool] : {std::pair{303, 3}, {1212, 12}, {3, 0}, {310, 0}, {100, 0}}) {
+    MotionList program = started();
+    program.tool(number).feed({20, 20, -5});
+    const Shop shop(program);
+    ASSERT_EQ(shop.ids(), (Ids{FindingId::kToolUndefined}));
+    const std::string& hint = shop.findings()[0].hint;
+    if (tool == 0) {
+      EXPECT_EQ(hint, "") << number;
+    } else {
+      EXPECT_NE(hint.find(fmt::format("reads tool {} there", number)), hint.npos) << hint;
+      EXPECT_NE(hint.find(fmt::format("T{} M6 G43", tool)), hint.npos) << hint;
+    }
+  }
 }
 
 TEST(CutStage, OneArgumentServesAProgramWithoutToolChange) {
