@@ -108,7 +108,8 @@ void unpack(const fs::path& truth, const TestFolder& folder, std::set<std::strin
       program = {};
       const fs::path name = line.substr(3);
       if (name.extension() != ".ngc" && name.extension() != ".nc") continue;
-      const std::string path = folder.path(truth.stem().string() + "_" + name.filename().string());
+      const std::string path = folder.path(truth.parent_path().filename().string() + "_" +
+                                           truth.stem().string() + "_" + name.filename().string());
       program.open(path);
       programs.insert(path);
     } else if (program.is_open()) {

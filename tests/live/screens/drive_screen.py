@@ -5,7 +5,7 @@ for kerf's leave, starts it, waits for its end, and closes the screen. Writes sc
   load_to_ok_s  seconds from opening the program to kerf.program-ok; null: it never came
   dry_run_s     seconds until a kerf run of the program was there, or its leave
   findings, time_left_s   the pins when it was loaded
-  tab_seen      whether kerf's window can be seen while the program runs, once its tab was clicked at KERF_TAB_AT
+  tab_seen      whether kerf's window can be seen while the program runs, once its tab was clicked (show_tab)
   program_s     that it took; null: it did not come to its end
   restarted_s   seconds from a crash of what is in the tab to kerf.alive again
   edit_to_off_s seconds from a change of the file on the disk until the leave is gone
@@ -44,17 +44,19 @@ def is_allowed():
     return pin("kerf.program-ok") == "TRUE"
 
 
-def show_tab():
-    """The tab is brought to the front, as a click would: the place of its name differs."""
-    place = os.environ.get("KERF_TAB_AT")
-    if place:
-        subprocess.run(["xdotool", "mousemove", *place.split(","), "click", "1"], check=False)
-
-
 def is_seen():
     """A window of kerf's is mapped, and all that it lies in."""
     done = subprocess.run(["xdotool", "search", "--onlyvisible", "--class", "kerf"], capture_output=True, check=False)
     return done.stdout.strip() != b""
+
+
+def show_tab():
+    """The tab is brought to the front, as a click would. KERF_TAB_AT are places where its name may stand, "X,Y X,Y": it
+    differs by screen, and by the letters that are installed."""
+    for place in os.environ.get("KERF_TAB_AT", "").split():
+        subprocess.run(["xdotool", "mousemove", *place.split(","), "click", "1"], check=False)
+        if drive.wait_until("", is_seen, 1):
+            break
 
 
 def click_through(places):
