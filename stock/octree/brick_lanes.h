@@ -24,9 +24,33 @@ inline void fix_spindle(Sweep& fixed) {
   fixed.w = fixed.mean_w;
   fixed.bend_mm = 0;
   const ToolBody::Shape shape = fixed.body->shape;
-  fixed.kind = shape == ToolBody::Shape::kBall     ? Sweep::Kind::kBall
-               : shape == ToolBody::Shape::kSphere ? Sweep::Kind::kSphere
-                                                   : Sweep::Kind::kRamp;
+  fixed.kind = shape == ToolBody::Shape::kBall ? Sweep::Kind::kBall : Sweep::Kind::kRamp;
+}
+
+/// All of the brick lies below the cylinder of a ball nose, on all of its way: the sphere alone is
+/// near.
+inline bool sees_sphere(const BrickWork& work, const Sweep& sweep) {
+  if (sweep.body->shape != ToolBody::Shape::kBall) return false;
+  if (sweep.kind != Sweep::Kind::kBall && sweep.kind != Sweep::Kind::kTurn) return false;
+  const auto way = [&](int axis, double origin) {
+    return 0.5 * (work.place_mm[axis][0] + work.place_mm[axis][kBrick]) - origin;
+  };
+  const Vec3 &o = sweep.origin_mm, &step = sweep.step, &w = sweep.w, &turn = sweep.turn;
+  const double x = way(0, o.x), y = way(1, o.y), z = way(2, o.z);
+  const double first = x * w.x + y * w.y + z * w.z;
+  const double last =
+      (x - step.x) * (w.x + turn.x) + (y - step.y) * (w.y + turn.y) + (z - step.z) * (w.z + turn.z);
+  const double bulge = step.x * turn.x + step.y * turn.y + step.z * turn.z;
+  const double most = (first < last ? last : first) + (bulge > 0 ? 0.25 * bulge : 0.0);
+  return most + work.half_diagonal_mm + kBlockSlack_mm < 0;
+}
+
+/// The sweep as this brick sees it.
+inline const Sweep& seen_sweep(BrickWork& work, const Sweep& sweep) {
+  if (!sees_sphere(work, sweep)) return sweep;
+  work.fixed = sweep;
+  work.fixed.kind = Sweep::Kind::kSphere;
+  return work.fixed;
 }
 
 /// By how much F of a turning piece may differ from that without the turn, in this brick: a body of
@@ -435,7 +459,8 @@ inline void finish(BrickWork& work, OpenBrick& brick) {
   brick.top_is_known = false;
 }
 
-bool brick_remove(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
+bool brick_remove(BrickWork& work, const Sweep& cutting, OpenBrick& brick) {
+  const Sweep& sweep = seen_sweep(work, cutting);
   if (!sort_blocks(work, sweep)) return false;
   const bool cleared = find_nodes(work, sweep, brick);
   sort_edges(work, brick);
@@ -454,7 +479,8 @@ bool brick_remove(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
   return true;
 }
 
-bool brick_meets(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
+bool brick_meets(BrickWork& work, const Sweep& cutting, const OpenBrick& brick) {
+  const Sweep& sweep = seen_sweep(work, cutting);
   if (!sort_blocks(work, sweep)) return false;
   if (find_nodes(work, sweep, brick)) return true;
   sort_edges(work, brick);

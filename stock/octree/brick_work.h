@@ -54,8 +54,9 @@ struct BrickWork {
   unsigned reached = 0;  ///< blocks that any sweep has come near
 
   // Of the sweep.
-  Sweep fixed;        ///< of a turning piece: its way without the turn,
-  double off_mm = 0;  ///< of which F differs by at most this in the brick, as both are found
+  Sweep fixed;  ///< of a turning piece: its way without the turn, or the sphere of a ball
+  double off_mm =
+      0;  ///< F without the turn differs by at most this in the brick, as both are found
   Side blocks[8];
   std::uint16_t columns[kSide * kSide];  ///< after it
   int cleared = 0;                       ///< own nodes that it takes

@@ -55,7 +55,7 @@ struct Roots {
   Doubles length, start;
   Doubles low, high;     ///< bracket
   Doubles f_low, slope;  ///< at `low`
-  Doubles nx, ny, nz;    ///< the sweep's normal there
+  Doubles nx, ny, nz;    ///< the sweep's normal there, of any length
   Doubles tried;
   Masks active;  ///< while the root is looked for
 };
@@ -112,6 +112,45 @@ KERF_LANES bool narrow_roots(const Gradients& g, int step, Roots& r) {
   r.active = r.active & ~found;
   r.tried = choose(r.active, next, r.tried);
   return any(r.active);
+}
+
+/// A sphere that goes straight sweeps a cylinder with round ends, which a line enters once: by that
+/// of the three which is nearest to where it is entered. Lanes that are not found so stay active.
+KERF_LANES bool enter_sphere(const Sweep& s, Roots& r) {
+  constexpr int kGuesses = 3;
+  const double radius = s.body->elements[0].radius - s.shrink_mm;
+  const Doubles zero = all(0.0), one = all(1.0), per = all(s.per_step2);
+  const Doubles x = r.x - all(s.origin_mm.x), y = r.y - all(s.origin_mm.y),
+                z = r.z - all(s.origin_mm.z);
+  const Doubles start = along(s.step, x, y, z) * per;  // part of the path, not held to 0..1
+  const Doubles d = along(s.step, r.dx, r.dy, r.dz), turn = d * per;
+  Doubles part = unit_clamp(start + all(0.5) * (r.start + r.high) * turn);
+  for (int guess = 0; guess < kGuesses; ++guess) {
+    const Masks inside = (zero < part) & (part < one);
+    // Of the ends the way from their centres, of the cylinder square to its axis.
+    const Doubles at = choose(inside, start, part);
+    const Doubles mx = x - at * all(s.step.x), my = y - at * all(s.step.y),
+                  mz = z - at * all(s.step.z);
+    const Doubles a = one - choose(inside, turn * d, zero), b = mx * r.dx + my * r.dy + mz * r.dz,
+                  c = mx * mx + my * my + mz * mz - all(radius * radius);
+    const Doubles inner = b * b - a * c;
+    // The form that does not cancel: b is negative where a line enters.
+    const Doubles t = c / greater(root(greater(inner, zero)) - b, all(kTiny));
+    const Doubles next = unit_clamp(start + t * turn);
+    const Masks stays =
+        (inside & (zero < next) & (next < one)) | (~inside & (next <= part) & (part <= next));
+    const Masks found = r.active & stays & (zero <= inner);
+    const Doubles low = greater(r.start, lesser(t, r.high));
+    r.low = choose(found, low, r.low);
+    // Not of length 1, as nothing asks for.
+    r.nx = choose(found, x + low * r.dx - next * all(s.step.x), r.nx);
+    r.ny = choose(found, y + low * r.dy - next * all(s.step.y), r.ny);
+    r.nz = choose(found, z + low * r.dz - next * all(s.step.z), r.nz);
+    r.active = r.active & ~found;
+    if (!any(r.active)) return false;
+    part = next;
+  }
+  return true;
 }
 
 /// Where a path of added material begins outside of the blank, the surface is the blank's face.
@@ -203,6 +242,10 @@ inline void solve(const BrickWork& work, const Sweep& sweep, int first, int coun
   const auto bits = [](int groups) { return (1u << groups) - 1; };
   if (count == 1 || !is_dear(sweep.kind)) {
     unsigned open = bits(count);
+    if (sweep.kind == Sweep::Kind::kSphere && !work.at_end) {
+      for (int g = 0; g < count; ++g)
+        if (!enter_sphere(sweep, found[g])) open &= ~(1u << g);
+    }
     for (int step = 0; open != 0; ++step) open = step_roots(work, sweep, step, open, found);
     return;
   }

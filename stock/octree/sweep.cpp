@@ -68,6 +68,17 @@ bool bound(Sweep& sweep, Box box, double margin, const Box& bounds) {
   return !box.empty();
 }
 
+/// Of a ball nose or a sphere, above the tip.
+double centre_above(const ToolBody& body) {
+  return body.shape == ToolBody::Shape::kGeneral ? 0 : body.elements[0].center_z;
+}
+
+void set_step(Sweep& sweep, const Vec3& step) {
+  sweep.step = step;
+  const double step2 = glm::dot(step, step);
+  sweep.per_step2 = step2 > 0 ? 1 / step2 : 0;
+}
+
 void add_straight(const ToolBody& body, const Vec3& from, const Vec3& to, const Vec3& w,
                   Sweep sweep, const Box& bounds, std::vector<Sweep>& out) {
   const Vec3 step = to - from;
@@ -75,7 +86,8 @@ void add_straight(const ToolBody& body, const Vec3& from, const Vec3& to, const 
   const Vec3 level = step - rise * w;
   const double run = glm::length(level);
   sweep.body = &body;
-  sweep.origin_mm = from;
+  sweep.origin_above_mm = centre_above(body);
+  sweep.origin_mm = from + sweep.origin_above_mm * w;
   sweep.w = w;
   sweep.u = run > kNothing_mm ? level / run : any_across(w);
   sweep.v = glm::cross(w, sweep.u);
@@ -86,12 +98,13 @@ void add_straight(const ToolBody& body, const Vec3& from, const Vec3& to, const 
     sweep.origin_mm += std::min(0.0, rise) * w;
     sweep.length_w = 0;
   }
+  set_step(sweep, sweep.length_u * sweep.u + sweep.length_w * w);
   if (body.shape == ToolBody::Shape::kSphere)
     sweep.kind = Sweep::Kind::kSphere;
-  else if (sweep.length_w == 0)
-    sweep.kind = Sweep::Kind::kLevel;
+  else if (body.shape == ToolBody::Shape::kBall)
+    sweep.kind = Sweep::Kind::kBall;
   else
-    sweep.kind = body.shape == ToolBody::Shape::kBall ? Sweep::Kind::kBall : Sweep::Kind::kRamp;
+    sweep.kind = sweep.length_w == 0 ? Sweep::Kind::kLevel : Sweep::Kind::kRamp;
   Box box;
   extend(box, from, w, body, reach_above(bounds, from, w, body));
   extend(box, to, w, body, reach_above(bounds, to, w, body));
@@ -120,8 +133,10 @@ void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const S
   const double farthest = std::max(reach_above(bounds, move.from_mm, move.axis_from, body),
                                    reach_above(bounds, move.to_mm, move.axis_to, body)) +
                           body.radius_mm;
-  const double needed = std::max(angle / kTurnPiece_rad,
-                                 std::sqrt(bend_mm(farthest, length, angle) / target.chord_mm));
+  const double above = centre_above(body);
+  // The centre's way is no longer than the tip's and what it turns.
+  const double bend = bend_mm(farthest, length + above * angle, angle);
+  const double needed = std::max(angle / kTurnPiece_rad, std::sqrt(bend / target.chord_mm));
   const int pieces = std::max(1, static_cast<int>(std::ceil(needed)));
   const auto axis_at = [&](int i) { return turned_axis(move, static_cast<double>(i) / pieces); };
   const auto tip_at = [&](int i) {
@@ -130,11 +145,12 @@ void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const S
   for (int i = 0; i < pieces; ++i) {
     const Vec3 tip0 = tip_at(i), tip1 = tip_at(i + 1), w0 = axis_at(i), w1 = axis_at(i + 1);
     Sweep piece = sweep;
-    piece.kind = Sweep::Kind::kTurn;
+    piece.kind = body.shape == ToolBody::Shape::kSphere ? Sweep::Kind::kSphere : Sweep::Kind::kTurn;
     piece.body = &body;
-    piece.origin_mm = tip0;
+    piece.origin_above_mm = above;
+    piece.origin_mm = tip0 + above * w0;
     piece.w = w0;
-    piece.step = tip1 - tip0;
+    set_step(piece, tip1 + above * w1 - piece.origin_mm);
     piece.turn = w1 - w0;
     set_mean(piece, w0, w1);
     const double reach =
@@ -144,8 +160,8 @@ void add_turning(const ToolBody& body, const CutMove& move, Sweep sweep, const S
     extend(box, tip0, w0, body, reach);
     extend(box, tip1, w1, body, reach);
     piece.bend_mm = bend_mm(reach + body.radius_mm, glm::length(piece.step), angle / pieces);
-    // A point at `reach` bulges out from between its ends by a sagitta.
-    const double sagitta = reach * kTurnPiece_rad * kTurnPiece_rad / 8;
+    // A point at `reach` bulges out from between its ends by a sagitta, a ball's centre not at all.
+    const double sagitta = (reach + above) * kTurnPiece_rad * kTurnPiece_rad / 8;
     if (bound(piece, box, sagitta, bounds)) out.push_back(piece);
   }
 }

@@ -129,30 +129,61 @@ KERF_LANES void arc(const Sweep& s, const Points& points, Gradients& out) {
   finish_level<kGradients>(s, du, dv, p, out);
 }
 
-/// Ball noses and spheres: s has a closed form.
+KERF_LANES void from_origin(const Sweep& s, const Points& points, Points& out) {
+  out.x = points.x - all(s.origin_mm.x);
+  out.y = points.y - all(s.origin_mm.y);
+  out.z = points.z - all(s.origin_mm.z);
+}
+
+/// From the nearest place of a sphere's centre, of points from its origin.
+KERF_LANES void from_path(const Sweep& s, const Points& p, Points& out) {
+  const Doubles at = unit_clamp(along(s.step, p.x, p.y, p.z) * all(s.per_step2));
+  out.x = p.x - at * all(s.step.x);
+  out.y = p.y - at * all(s.step.y);
+  out.z = p.z - at * all(s.step.z);
+}
+
 template <bool kGradients>
-KERF_LANES void ball(const Sweep& s, const Points& points, Gradients& out) {
-  Local p;
-  to_local(s, points, p);
-  const ToolElement& e = s.body->elements[0];
-  const bool whole = s.kind == Sweep::Kind::kSphere;
-  const double length2 = s.length_u * s.length_u + s.length_w * s.length_w;
-  const double per_length2 = length2 > 0 ? 1 / length2 : 0;
-  const double per_u = s.length_u > 0 ? 1 / s.length_u : 0;
-  const Doubles length_u = all(s.length_u), length_w = all(s.length_w), zero = all(0.0);
-  const Doubles w = p.w - all(e.center_z);
-  // Nearest seen along the spindle; that is where the cylinder above the ball is nearest.
-  const Doubles above = unit_clamp(p.u * all(per_u));
-  const Doubles nearest = unit_clamp((p.u * length_u + w * length_w) * all(per_length2));
-  const auto by_cylinder = whole ? zero < zero : zero <= w - above * length_w;
-  const Doubles at = choose(by_cylinder, above, nearest);
-  const Doubles du = p.u - at * length_u, dw = choose(by_cylinder, zero, w - at * length_w);
-  const Doubles distance = root(du * du + p.v * p.v + dw * dw);
-  out.f = distance - all(e.radius);
+KERF_LANES void round_value(const Sweep& s, const Points& way, const Doubles& distance,
+                            Gradients& out) {
+  out.f = distance - all(s.body->elements[0].radius);
   if constexpr (kGradients) {
     const Doubles inverse = all(1.0) / greater(distance, all(kTiny));
-    to_workpiece(s, du * inverse, p.v * inverse, dw * inverse, out);
+    out.x = way.x * inverse;
+    out.y = way.y * inverse;
+    out.z = way.z * inverse;
   }
+}
+
+template <bool kGradients>
+KERF_LANES void sphere(const Sweep& s, const Points& points, Gradients& out) {
+  Points p, way;
+  from_origin(s, points, p);
+  from_path(s, p, way);
+  round_value<kGradients>(s, way, root(way.x * way.x + way.y * way.y + way.z * way.z), out);
+}
+
+/// Ball noses: bits below the cylinder are those of the sphere.
+template <bool kGradients>
+KERF_LANES void ball(const Sweep& s, const Points& points, Gradients& out) {
+  Points p, way;
+  from_origin(s, points, p);
+  from_path(s, p, way);
+  const double per_u = s.length_u > 0 ? 1 / s.length_u : 0;
+  const Doubles u = along(s.u, p.x, p.y, p.z), v = along(s.v, p.x, p.y, p.z),
+                w = along(s.w, p.x, p.y, p.z), zero = all(0.0);
+  // Nearest seen along the spindle; that is where the cylinder above the ball is nearest.
+  const Doubles above = unit_clamp(u * all(per_u));
+  const auto by_cylinder = zero <= w - above * all(s.length_w);
+  const Doubles du = u - above * all(s.length_u);
+  const Doubles distance2 =
+      choose(by_cylinder, du * du + v * v, way.x * way.x + way.y * way.y + way.z * way.z);
+  if constexpr (kGradients) {
+    way.x = choose(by_cylinder, du * all(s.u.x) + v * all(s.v.x), way.x);
+    way.y = choose(by_cylinder, du * all(s.u.y) + v * all(s.v.y), way.y);
+    way.z = choose(by_cylinder, du * all(s.u.z) + v * all(s.v.z), way.z);
+  }
+  round_value<kGradients>(s, way, root(distance2), out);
 }
 
 /// Value, slope in s, and gradient, at each lane's own s.
@@ -170,7 +201,8 @@ struct RampPath {
   /// Gradients along u, v, w.
   KERF_LANES void at(const Place& p, Trial& t) const {
     const Doubles du = p.u - t.s * all(sweep.length_u);
-    const Doubles r = root(du * du + p.v * p.v), z = p.w - t.s * all(sweep.length_w);
+    const Doubles r = root(du * du + p.v * p.v),
+                  z = p.w - t.s * all(sweep.length_w) + all(sweep.origin_above_mm);
     Value value;
     body_value(*sweep.body, r, z, value);
     const Doubles inverse = value.nr / greater(r, all(kTiny));
@@ -190,12 +222,8 @@ struct RampPath {
 
 struct TurnPath {
   const Sweep& sweep;
-  using Place = Points;  ///< from the tip's start
-  KERF_LANES void place(const Points& points, Place& p) const {
-    p.x = points.x - all(sweep.origin_mm.x);
-    p.y = points.y - all(sweep.origin_mm.y);
-    p.z = points.z - all(sweep.origin_mm.z);
-  }
+  using Place = Points;  ///< from the origin
+  KERF_LANES void place(const Points& points, Place& p) const { from_origin(sweep, points, p); }
   KERF_LANES void at(const Place& p, Trial& t) const {
     const Vec3 &step = sweep.step, &turn = sweep.turn;
     const Doubles x = p.x - t.s * all(step.x), y = p.y - t.s * all(step.y),
@@ -209,11 +237,11 @@ struct TurnPath {
     const Doubles rx = x - z * wx, ry = y - z * wy, rz = zz - z * wz;
     const Doubles r = root(rx * rx + ry * ry + rz * rz);
     Value value;
-    body_value(*sweep.body, r, z, value);
+    body_value(*sweep.body, r, z + all(sweep.origin_above_mm), value);
     const Doubles inverse = value.nr / greater(r, all(kTiny)), nz = value.nz;
     const Doubles gx = rx * inverse + nz * wx, gy = ry * inverse + nz * wy,
                   gz = rz * inverse + nz * wz;
-    // The tool's point there moves with the tip and turns about it; a turn by w' carries
+    // The tool's point there moves with the origin and turns about it; a turn by w' carries
     // z * w + out to z * w' - (out . w') * w.
     const Doubles ahead = all(turn.x) * wx + all(turn.y) * wy + all(turn.z) * wz;
     const Doubles tx = (all(turn.x) - ahead * wx) * per, ty = (all(turn.y) - ahead * wy) * per,
@@ -302,7 +330,7 @@ template <class Path>
 KERF_LANES bool step_search(const Path& path, int step, Search<Path>& s) {
   Trial c;
   Doubles gap;
-  next_trial(s.a, s.b, path.sweep.bend_mm, step % 2 == 0, c, gap);
+  next_trial(s.a, s.b, path.sweep.bend_mm, step % 2 != 0, c, gap);
   // A path that rises from its start or falls to its end has its minimum there.
   const Doubles zero = all(0.0);
   const Masks searching = (s.a.slope < zero) & (zero < s.b.slope) & (all(kSweepSlack_mm) < gap);
@@ -361,6 +389,43 @@ inline void search(const Path& path, const Points* points, int count, Gradients*
   }
 }
 
+/// A ball nose whose spindle turns: what is below the cylinder all the way sees a sphere.
+template <bool kGradients>
+inline void turning_ball(const Sweep& s, const Points* points, int count, Gradients* out) {
+  const Vec3 end_w = s.w + s.turn;
+  // The height above the centre is a parabola along the way.
+  const double bulge = s.step.x * s.turn.x + s.step.y * s.turn.y + s.step.z * s.turn.z;
+  const Doubles more = all(bulge > 0 ? 0.25 * bulge : 0.0), zero = all(0.0);
+  Points others[kSearchGroups];
+  Masks below[kSearchGroups];
+  int which[kSearchGroups], left = 0;
+  for (int g = 0; g < count; ++g) {
+    Points p, way;
+    from_origin(s, points[g], p);
+    from_path(s, p, way);
+    round_value<kGradients>(s, way, root(way.x * way.x + way.y * way.y + way.z * way.z), out[g]);
+    const Doubles first = along(s.w, p.x, p.y, p.z);
+    const Doubles last =
+        along(end_w, p.x - all(s.step.x), p.y - all(s.step.y), p.z - all(s.step.z));
+    below[left] = greater(first, last) + more <= zero;
+    if (!any(~below[left])) continue;
+    others[left] = points[g];
+    which[left++] = g;
+  }
+  if (left == 0) return;
+  Gradients found[kSearchGroups];
+  search<kGradients>(TurnPath{s}, others, left, found);
+  for (int n = 0; n < left; ++n) {
+    Gradients& g = out[which[n]];
+    g.f = choose(below[n], g.f, found[n].f);
+    if constexpr (kGradients) {
+      g.x = choose(below[n], g.x, found[n].x);
+      g.y = choose(below[n], g.y, found[n].y);
+      g.z = choose(below[n], g.z, found[n].z);
+    }
+  }
+}
+
 /// Of up to kSearchGroups groups of eight points.
 template <bool kGradients>
 inline void evaluate(const Sweep& s, const Points* points, int count, Gradients* out) {
@@ -372,14 +437,19 @@ inline void evaluate(const Sweep& s, const Points* points, int count, Gradients*
       for (int g = 0; g < count; ++g) arc<kGradients>(s, points[g], out[g]);
       break;
     case Sweep::Kind::kBall:
-    case Sweep::Kind::kSphere:
       for (int g = 0; g < count; ++g) ball<kGradients>(s, points[g], out[g]);
+      break;
+    case Sweep::Kind::kSphere:
+      for (int g = 0; g < count; ++g) sphere<kGradients>(s, points[g], out[g]);
       break;
     case Sweep::Kind::kRamp:
       search<kGradients>(RampPath{s}, points, count, out);
       break;
     default:
-      search<kGradients>(TurnPath{s}, points, count, out);
+      if (s.body->shape == ToolBody::Shape::kBall)
+        turning_ball<kGradients>(s, points, count, out);
+      else
+        search<kGradients>(TurnPath{s}, points, count, out);
       break;
   }
   for (int g = 0; g < count; ++g) out[g].f = out[g].f + all(s.shrink_mm);

@@ -205,7 +205,8 @@ double alike_above_mm(const Sweep& sweep) {
     }
   }
   constexpr double kMargin_mm = 0.1;
-  return sweep.origin_mm.z + std::max(0.0, sweep.length_w) + height + kMargin_mm;
+  return sweep.origin_mm.z - sweep.origin_above_mm + std::max(0.0, sweep.length_w) + height +
+         kMargin_mm;
 }
 
 std::vector<double> alike_above_mm(std::span<const Sweep> sweeps) {

@@ -113,6 +113,56 @@ TEST(OctreeModel, KernelsLeaveTheSameWorkpiece) {
   }
 }
 
+/// Of a ball nose whose spindle turns, against points tried along the way: in the hemisphere, above
+/// it, and where it goes over from one to the other.
+TEST(OctreeModel, ATurningBallIsAsFarAsItsNearestPose) {
+  using namespace octree;
+  const double radius = 2.5;
+  const auto bodies = tool_bodies(make_cutter("ball:5"));
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> place(-4, 4);
+  const SweepKernel kernel = pick_kernel(KernelChoice::kAuto);
+  const Box everywhere{Vec3(-20), Vec3(20)};
+  int below = 0, above = 0;
+  for (int n = 0; n < 40; ++n) {
+    CutMove move = line({place(engine), 0, 0}, {1, place(engine), 0.3 * place(engine)});
+    move.axis_from = glm::normalize(Vec3(0.1 * place(engine), 0.1 * place(engine), 1));
+    move.axis_to = glm::normalize(move.axis_from + Vec3(0.02 * place(engine), 0.03, 0));
+    std::vector<Sweep> sweeps;
+    append_sweeps(*bodies, move, 0, {everywhere, 0.002, 0}, sweeps);
+    ASSERT_FALSE(sweeps.empty());
+    alignas(64) double p[3][8], f[8], nearest[8];
+    for (auto& axis : p)
+      for (double& value : axis) value = place(engine);
+    std::fill_n(nearest, 8, 1e9);
+    for (const Sweep& sweep : sweeps) {
+      kernel.distance(sweep, 8, p[0], p[1], p[2], f);
+      for (int l = 0; l < 8; ++l) nearest[l] = std::min(nearest[l], f[l]);
+    }
+    const double angle = std::acos(glm::dot(move.axis_from, move.axis_to));
+    for (int l = 0; l < 8; ++l) {
+      double tried = 1e9, height = 0;
+      for (int step = 0; step <= 4000; ++step) {
+        const double s = step / 4000.0;
+        const Vec3 w =
+            (std::sin((1 - s) * angle) * move.axis_from + std::sin(s * angle) * move.axis_to) /
+            std::sin(angle);
+        const Vec3 from = Vec3(p[0][l], p[1][l], p[2][l]) - move.from_mm -
+                          s * (move.to_mm - move.from_mm) - radius * w;
+        const double up = glm::dot(from, w);
+        const double value = glm::length(up > 0 ? from - up * w : from) - radius;
+        if (value < tried) height = up;
+        tried = std::min(tried, value);
+      }
+      (height < 0 ? below : above) += 1;
+      // What the centre's straight way leaves, and half a step of the points tried.
+      EXPECT_NEAR(nearest[l], tried, 0.0012) << n << ' ' << l;
+    }
+  }
+  EXPECT_GT(below, 100);
+  EXPECT_GT(above, 40);
+}
+
 TEST(OctreeModel, CuttingTwiceRemovesNothing) {
   const std::vector<CutMove> moves = wandering_moves(12, 7);
   for (const char* shape : {"ball:5", "flat:4", "bull:6:1", "tslot:7:2:3"}) {

@@ -147,8 +147,10 @@ const std::vector<const char*> kShapes{"flat:4",      "ball:5",         "bull:6:
 TEST(OctreeOracle, UprightMoves) { compare(Motion::kUpright, kShapes, 1); }
 TEST(OctreeOracle, TiltedMoves) { compare(Motion::kTilted, kShapes, 2); }
 TEST(OctreeOracle, TurningMoves) {
-  compare(Motion::kTurning,
-          {"flat:4", "bull:6:1.5", "vee:6:60:1", "lollipop:5:2", "dovetail:7:50:3"}, 3);
+  compare(
+      Motion::kTurning,
+      {"flat:4", "ball:5", "ball:3", "bull:6:1.5", "vee:6:60:1", "lollipop:5:2", "dovetail:7:50:3"},
+      3);
 }
 TEST(OctreeOracle, Arcs) { compare(Motion::kArc, kShapes, 4); }
 
