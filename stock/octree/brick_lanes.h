@@ -76,6 +76,24 @@ inline void set_planes(BrickWork& work, const Points& p, const Gradients& g, dou
   store_lanes(g.f - (g.x * p.x + g.y * p.y + g.z * p.z) - all(off_mm), work.plane_at);
 }
 
+/// How far F may be above its planes, `more_mm` included: that of a ball is a distance from its path
+/// and what is above that, which is convex, and bends by no more than 1 / the distance.
+inline void set_bends(BrickWork& work, const Sweep& sweep, const Doubles& f, double more_mm) {
+  if (sweep.kind != Sweep::Kind::kSphere && sweep.kind != Sweep::Kind::kBall) {
+    for (int b = 0; b < 8; ++b) work.bend_mm[b] = work.bend_beside_mm[b] = kUnbounded;
+    return;
+  }
+  const Doubles distance = f + all(sweep.body->elements[0].radius - sweep.shrink_mm);
+  const auto bend = [&](double reach) {
+    const Doubles least = distance - all(reach);
+    return choose(least < all(reach), all(kUnbounded),
+                  all(0.5 * reach * reach) / least + all(more_mm));
+  };
+  const double cell = work.place_slack_mm * kEdgeParts;
+  store_lanes(bend(work.block_clear_mm), work.bend_mm);
+  store_lanes(bend(work.block_clear_mm + cell), work.bend_beside_mm);
+}
+
 KERF_LANES Masks is_near(const Doubles& f, double value, double off) {
   return (all(value - off) <= f) & (f <= all(value + off));
 }
@@ -109,12 +127,14 @@ inline bool sort_blocks(BrickWork& work, const Sweep& sweep) {
     const double off = off_mean_mm(work, sweep);
     set_planes(work, p, g, off);
     work.off_mm = off + 2 * kSweepSlack_mm + kBlockSlack_mm;
+    set_bends(work, work.fixed, g.f, off + work.off_mm);
     const auto near = [&](double f) { return is_near(g.f, f, work.off_mm); };
     if (any(near(-clear) | near(clear) | near(clear + kReachMargin_mm)))
       evaluate<false>(sweep, &p, 1, &g);
   } else {
     evaluate<true>(sweep, &p, 1, &g);
     set_planes(work, p, g, 0);
+    set_bends(work, sweep, g.f, 0);
   }
   store_lanes(g.f, work.f);
   bool reaches = false;
@@ -265,18 +285,22 @@ inline void place_crossings(BrickWork& work, EdgeList& list) {
   }
 }
 
+/// The value of a block's plane at an edge's crossing, which lies `reach` from its solid end.
+inline double plane_at(const BrickWork& work, int block, const SolidEnd& end, unsigned edge,
+                       double reach) {
+  const EdgeWay& way = kEdgeWays[edge >> 9];
+  return work.plane_at[block] +
+         work.plane_x[block] * (work.place_mm[0][end.i] + way.along[0] * reach) +
+         work.plane_y[block] * (work.place_mm[1][end.j] + way.along[1] * reach) +
+         work.plane_z[block] * (work.place_mm[2][end.k] + way.along[2] * reach);
+}
+
 /// Where F is dear: may it be less than 0 at the edge's crossing, which lies `reach` from its solid
 /// end? By a plane, or by that end, from where F falls by 1 mm a mm at most.
 inline bool may_reach(const BrickWork& work, const Sweep& sweep, unsigned edge, double reach) {
   const SolidEnd end(edge);
   const int b = end.block();
-  if (has_planes(sweep.kind)) {
-    const EdgeWay& way = kEdgeWays[edge >> 9];
-    return work.plane_at[b] + work.plane_x[b] * (work.place_mm[0][end.i] + way.along[0] * reach) +
-               work.plane_y[b] * (work.place_mm[1][end.j] + way.along[1] * reach) +
-               work.plane_z[b] * (work.place_mm[2][end.k] + way.along[2] * reach) <
-           kBlockSlack_mm;
-  }
+  if (has_planes(sweep.kind)) return plane_at(work, b, end, edge, reach) < kBlockSlack_mm;
   return work.blocks[b] != BrickWork::kMixed || work.node_f[end.node()] < reach;
 }
 
@@ -367,9 +391,14 @@ inline void find_lost(BrickWork& work, const Sweep& sweep, const OpenBrick& bric
   for_each_edge(far, brick.columns, [&](unsigned edge) {
     const double reach = reach_of(work, brick, edge);
     const SolidEnd end(edge);
-    if (work.blocks[end.block()] == BrickWork::kMixed &&
-        work.node_f[end.node()] + reach <= kLeastFilm_mm)
-      return;
+    const int b = end.block();
+    if (work.blocks[b] == BrickWork::kMixed) {
+      const bool is_bounded = work.bend_beside_mm[b] < kUnbounded;
+      const double most = is_bounded
+                              ? plane_at(work, b, end, edge, reach) + work.bend_beside_mm[b]
+                              : work.node_f[end.node()] + reach;
+      if (most <= kLeastFilm_mm) return;
+    }
     push(lost, edge, 0, reach);
   });
   if (lost.count == 0) return;

@@ -28,27 +28,29 @@ KERF_LANES Floats power_of_two(const Floats& n) {
 /// Tangent planes of two blocks, for four columns each.
 struct ColumnPlanes {
   Floats at, x, y;  ///< of the brick's first node, and by a cell along X or Y
+  Floats bend;      ///< F may be more than the plane by this
   Floats per_step, sign, offset;
 
   ColumnPlanes(const BrickWork& work, int left, int right) {
-    float lanes[6][2];
+    float lanes[7][2];
+    const double slack = kBlockSlack_mm + kFloatSlack * work.half_diagonal_mm;
     for (const bool is_right : {false, true}) {
       const int b = is_right ? right : left;
       const double step = work.plane_z[b] * work.cell_mm[2];
       const bool rises = step >= 0;
       // So little over a brick is far below the slack.
       const double least = rises ? (step < 1e-9 ? 1e-9 : step) : (step > -1e-9 ? -1e-9 : step);
-      const double values[6] = {
+      const double values[7] = {
           work.plane_at[b] + work.plane_x[b] * work.place_mm[0][0] +
-              work.plane_y[b] * work.place_mm[1][0] + work.plane_z[b] * work.place_mm[2][0] -
-              kBlockSlack_mm - kFloatSlack * work.half_diagonal_mm,
+              work.plane_y[b] * work.place_mm[1][0] + work.plane_z[b] * work.place_mm[2][0] - slack,
           work.plane_x[b] * work.cell_mm[0], work.plane_y[b] * work.cell_mm[1], -1 / least,
           // Rising: nodes up to where the plane is at 0; else all but those.
-          rises ? 1.0 : -1.0, rises ? -1.0 : double{1 << kSide}};
-      for (int n = 0; n < 6; ++n) lanes[n][is_right ? 1 : 0] = static_cast<float>(values[n]);
+          rises ? 1.0 : -1.0, rises ? -1.0 : double{1 << kSide}, work.bend_mm[b] + 2 * slack};
+      for (int n = 0; n < 7; ++n) lanes[n][is_right ? 1 : 0] = static_cast<float>(values[n]);
     }
     const auto get = [&](int n) { return four_each<Floats>(lanes[n][0], lanes[n][1]); };
     at = get(0), x = get(1), y = get(2), per_step = get(3), sign = get(4), offset = get(5);
+    bend = get(6);
   }
   /// Bits of nodes that are not surely outside, where the plane has these values at first nodes.
   KERF_LANES void nodes(const Floats& first, Ints& bits) const {
@@ -69,7 +71,7 @@ constexpr std::uint16_t kLowerNodes = 0x00f, kUpperNodes = 0x1f0;
 struct ColumnBlocks {
   ColumnPlanes lower, upper;
   Ints inside, mixed;
-  bool any;
+  bool any, are_bounded;
 
   ColumnBlocks(const BrickWork& work, int left, int right)
       : lower(work, left, right), upper(work, left + 4, right + 4) {
@@ -83,6 +85,17 @@ struct ColumnBlocks {
     inside = of(BrickWork::kInside);
     mixed = of(BrickWork::kMixed);
     any = any_bits(inside | mixed);
+    are_bounded = false;
+    for (const int b : {left, right, left + 4, right + 4})
+      are_bounded = are_bounded || work.bend_mm[b] < kUnbounded;
+  }
+  /// Nodes that the planes do not say to be outside, where they have these values at first nodes.
+  KERF_LANES Ints nodes(const Floats& lower_first, const Floats& upper_first) const {
+    Ints low, high;
+    lower.nodes(lower_first, low);
+    upper.nodes(upper_first, high);
+    return (low & all<Ints>(std::int32_t{kLowerNodes})) |
+           (high & all<Ints>(std::int32_t{kUpperNodes}));
   }
 };
 
@@ -96,14 +109,17 @@ struct NodeList {
   /// Columns number, number + stride, ..; `x`, `y`: their places, in cells.
   KERF_LANES void add(const ColumnBlocks& blocks, const Ints& solid, const Floats& x,
                       const Floats& y, int number, int stride) {
-    const Ints gone = solid & blocks.inside;
+    Ints gone = solid & blocks.inside;
     Ints bits = solid & blocks.mixed;
     if (planar && any_bits(bits)) {
-      Ints lower, upper;
-      blocks.lower.nodes(blocks.lower.at + blocks.lower.x * x + blocks.lower.y * y, lower);
-      blocks.upper.nodes(blocks.upper.at + blocks.upper.x * x + blocks.upper.y * y, upper);
-      bits = bits & ((lower & all<Ints>(std::int32_t{kLowerNodes})) |
-                     (upper & all<Ints>(std::int32_t{kUpperNodes})));
+      const Floats lower = blocks.lower.at + blocks.lower.x * x + blocks.lower.y * y,
+                   upper = blocks.upper.at + blocks.upper.x * x + blocks.upper.y * y;
+      bits = bits & blocks.nodes(lower, upper);
+      if (blocks.are_bounded && any_bits(bits)) {
+        const Ints within = bits & blocks.nodes(lower + blocks.lower.bend, upper + blocks.upper.bend);
+        gone = gone | within;
+        bits = bits & ~within;
+      }
     }
     alignas(32) std::int32_t lanes[8];
     if (any_bits(gone)) {
