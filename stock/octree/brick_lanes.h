@@ -76,11 +76,11 @@ inline void set_planes(BrickWork& work, const Points& p, const Gradients& g, dou
   store_lanes(g.f - (g.x * p.x + g.y * p.y + g.z * p.z) - all(off_mm), work.plane_at);
 }
 
-/// How far F may be above its planes, `more_mm` included: that of a ball is a distance from its path
-/// and what is above that, which is convex, and bends by no more than 1 / the distance.
+/// How far F may be above its planes, `more_mm` included: that of a ball is a distance from its
+/// path and what is above that, which is convex, and bends by no more than 1 / the distance.
 inline void set_bends(BrickWork& work, const Sweep& sweep, const Doubles& f, double more_mm) {
   if (sweep.kind != Sweep::Kind::kSphere && sweep.kind != Sweep::Kind::kBall) {
-    for (int b = 0; b < 8; ++b) work.bend_mm[b] = work.bend_beside_mm[b] = kUnbounded;
+    for (int b = 0; b < 8; ++b) work.bend_mm[b] = kUnbounded;
     return;
   }
   const Doubles distance = f + all(sweep.body->elements[0].radius - sweep.shrink_mm);
@@ -89,9 +89,7 @@ inline void set_bends(BrickWork& work, const Sweep& sweep, const Doubles& f, dou
     return choose(least < all(reach), all(kUnbounded),
                   all(0.5 * reach * reach) / least + all(more_mm));
   };
-  const double cell = work.place_slack_mm * kEdgeParts;
   store_lanes(bend(work.block_clear_mm), work.bend_mm);
-  store_lanes(bend(work.block_clear_mm + cell), work.bend_beside_mm);
 }
 
 KERF_LANES Masks is_near(const Doubles& f, double value, double off) {
@@ -101,6 +99,28 @@ KERF_LANES Masks is_near(const Doubles& f, double value, double off) {
 /// A turning piece's F is dear, that without the turn may be cheap and decide most.
 inline bool has_cheap_twin(const BrickWork& work, const Sweep& sweep) {
   return sweep.kind == Sweep::Kind::kTurn && !is_dear(work.fixed.kind);
+}
+
+/// What F is not less and not more than in any block, with slack, from F in their middles.
+inline void bound_blocks(const BrickWork& work, const Sweep& sweep, const Points& p,
+                         const Doubles& f, double* least, double* most) {
+  const Doubles clear = all(work.block_clear_mm);
+  Doubles low = f - clear, high = f + clear;
+  if (has_planes(sweep.kind)) {
+    const auto part = [&](const double* normal, int axis) {
+      const Doubles n = load_lanes<Doubles>(normal);
+      return greater(n, all(0.0) - n) * all(0.5 * kNodeBlock * work.cell_mm[axis]);
+    };
+    const Doubles reach =
+        part(work.plane_x, 0) + part(work.plane_y, 1) + part(work.plane_z, 2) + all(kBlockSlack_mm);
+    const Doubles plane =
+        load_lanes<Doubles>(work.plane_at) + load_lanes<Doubles>(work.plane_x) * p.x +
+        load_lanes<Doubles>(work.plane_y) * p.y + load_lanes<Doubles>(work.plane_z) * p.z;
+    low = greater(low, plane - reach);
+    high = lesser(high, plane + reach + load_lanes<Doubles>(work.bend_mm));
+  }
+  store_lanes(low, least);
+  store_lanes(high, most);
 }
 
 /// Which of the 2 x 2 x 2 blocks F decides at once, as it cannot change faster than by 1 mm a mm.
@@ -137,13 +157,14 @@ inline bool sort_blocks(BrickWork& work, const Sweep& sweep) {
     set_bends(work, sweep, g.f, 0);
   }
   store_lanes(g.f, work.f);
+  alignas(64) double least[8], most[8];
+  bound_blocks(work, sweep, p, g.f, least, most);
   bool reaches = false;
   for (int b = 0; b < 8; ++b) {
-    const double f = work.f[b];
-    work.blocks[b] = f > clear    ? BrickWork::kOutside
-                     : f < -clear ? BrickWork::kInside
-                                  : BrickWork::kMixed;
-    if (f <= clear + kReachMargin_mm) work.reached |= 1u << b;
+    work.blocks[b] = least[b] > 0  ? BrickWork::kOutside
+                     : most[b] < 0 ? BrickWork::kInside
+                                   : BrickWork::kMixed;
+    if (work.f[b] <= clear + kReachMargin_mm) work.reached |= 1u << b;
     reaches |= work.blocks[b] != BrickWork::kOutside;
   }
   return reaches;
@@ -165,18 +186,19 @@ inline void place_nodes(BrickWork& work, int count) {
 /// that it does not decide, and returns how many there are.
 inline int clear_nodes(BrickWork& work, int points, double off, bool& cleared) {
   int left = 0;
+  unsigned any_gone = 0;
   for (int n = 0; n < points; ++n) {
     const std::uint16_t node = work.nodes[n];
     const double most = work.f[n] + off;
     work.node_f[node] = most;
-    if (most < 0) {
-      std::uint16_t& column = work.columns[(node >> 8) * kSide + (node >> 4 & 15)];
-      column = static_cast<std::uint16_t>(column & ~(1u << (node & 15)));
-      cleared = true;
-    } else if (work.f[n] < off) {
-      work.nodes[left++] = node;
-    }
+    const unsigned is_gone = most < 0 ? 1u : 0u;
+    std::uint16_t& column = work.columns[(node >> 8) * kSide + (node >> 4 & 15)];
+    column = static_cast<std::uint16_t>(column & ~(is_gone << (node & 15)));
+    any_gone |= is_gone;
+    work.nodes[left] = node;
+    left += is_gone == 0 && work.f[n] < off ? 1 : 0;
   }
+  cleared = cleared || any_gone != 0;
   return left;
 }
 
@@ -225,20 +247,31 @@ inline void sort_edges(BrickWork& work, const OpenBrick& brick) {
   }
 }
 
-/// Calls visit(edge) for each bit, with kLowerIsSolid by `columns`.
-template <class Visit>
-inline void for_each_edge(const std::uint8_t* bytes, const std::uint16_t* columns,
-                          const Visit& visit) {
+/// Appends an edge for each bit, with kLowerIsSolid by `columns`. In eights, whatever their number:
+/// how many bits a word has is no matter that a processor foresees.
+inline void list_edges(const std::uint8_t* bytes, const std::uint16_t* columns, EdgeList& list) {
+  static_assert(kPointRoom >= kEdges + W);
   for (int word = 0; word < kEdges / 64; ++word) {
     std::uint64_t bits;
     std::memcpy(&bits, bytes + word * 8, 8);
+    if (bits == 0) continue;
     if constexpr (std::endian::native == std::endian::big) bits = __builtin_bswap64(bits);
-    const std::uint16_t* const row = columns + word % kBrick * kSide;
-    for (; bits != 0; bits &= bits - 1) {
-      const int at = __builtin_ctzll(bits);
-      const unsigned low = row[at >> 3] >> (at & 7) & 1u;
-      visit(static_cast<std::uint16_t>(static_cast<unsigned>(word * 64 + at) |
-                                       (low ? kLowerIsSolid : 0u)));
+    const Words row = load_lanes<Words>(columns + word % kBrick * kSide) & 0xff;
+    std::uint64_t solid;
+    store_lanes(__builtin_convertvector(row, Bytes), &solid);
+    if constexpr (std::endian::native == std::endian::big) solid = __builtin_bswap64(solid);
+    const int count = __builtin_popcountll(bits);
+    std::uint16_t* to = list.edge + list.count;
+    list.count += count;
+    for (int written = 0; written < count; written += W, to += W) {
+      for (int n = 0; n < W; ++n) {
+        // Without bits left it is any edge.
+        const unsigned at = static_cast<unsigned>(__builtin_ctzll(bits | std::uint64_t{1} << 63));
+        const unsigned low = static_cast<unsigned>(solid >> at) & 1u;
+        to[n] =
+            static_cast<std::uint16_t>(static_cast<unsigned>(word) * 64 + at + low * kLowerIsSolid);
+        bits &= bits - 1;
+      }
     }
   }
 }
@@ -252,36 +285,52 @@ inline double start_of(const BrickWork& work, unsigned edge) {
   return node == 0 || node > work.cells[axis] ? work.cell_mm[axis] / 2 : 0;
 }
 
-/// Where the crossing of an edge lies, mm from its solid end.
-inline double reach_of(const BrickWork& work, const OpenBrick& brick, unsigned edge) {
-  const int lower = brick.place[edge_of(edge)];
-  return work.cell_mm[axis_of(edge)] * ((edge & kLowerIsSolid) ? lower : kEdgeParts - lower) /
-         kEdgeParts;
+inline void put(EdgeList& list, int at, std::uint16_t edge, double start, double reach) {
+  list.edge[at] = edge;
+  list.start[at] = start;
+  list.reach[at] = reach;
 }
 
-inline void push(EdgeList& list, unsigned edge, double start, double reach) {
-  list.edge[list.count] = static_cast<std::uint16_t>(edge);
-  list.start[list.count] = start;
-  list.reach[list.count++] = reach;
+inline void pad(EdgeList& list) {
+  for (int n = list.count; n < padded(list.count); ++n) {
+    list.edge[n] = 0;
+    list.start[n] = list.reach[n] = 0;
+  }
+}
+
+/// Sets start and reach of edges that are listed from `first` on, by their crossings.
+inline void reach_crossings(const BrickWork& work, const OpenBrick& brick, EdgeList& list) {
+  pad(list);
+  for (int n = 0; n < list.count; n += W) {
+    const EdgeLanes edges(list.edge + n);
+    std::int32_t places[W];
+    for (int l = 0; l < W; ++l) places[l] = brick.place[edge_of(list.edge[n + l])];
+    const Ints lower = load_lanes<Ints>(places), upper = all<Ints>(kEdgeParts) - lower;
+    Doubles parts;
+    widen_to((lower & ~edges.up) | (upper & edges.up), parts);
+    store_lanes(edges.length(work) * parts / all(double{kEdgeParts}), list.reach + n);
+    store_lanes(all(0.0), list.start + n);
+  }
+  if (!work.at_end) return;
+  int left = 0;
+  for (int n = 0; n < list.count; ++n) {
+    const double start = start_of(work, list.edge[n]);
+    const bool has_way = list.reach[n] > start;
+    put(list, left, list.edge[n], start, list.reach[n]);
+    left += has_way ? 1 : 0;
+  }
+  list.count = left;
 }
 
 /// Places of the edges' crossings as points.
 inline void place_crossings(BrickWork& work, EdgeList& list) {
-  const int room = padded(list.count);
-  for (int n = list.count; n < room; ++n) {
-    list.edge[n] = 0;
-    list.reach[n] = 0;
-  }
-  for (int n = 0; n < room; ++n) {
-    const int edge = list.edge[n], axis = edge >> 9 & 3;
-    const bool lower = (edge & static_cast<int>(kLowerIsSolid)) != 0;
-    const int up = lower ? 0 : 1;
-    const double way = lower ? list.reach[n] : -list.reach[n];
-    const int i = (edge >> 3 & 7) + (axis == 0 ? up : 0),
-              j = (edge >> 6 & 7) + (axis == 1 ? up : 0), k = (edge & 7) + (axis == 2 ? up : 0);
-    work.x[n] = work.origin_mm[0] + (work.first[0] + i) * work.cell_mm[0] + (axis == 0 ? way : 0);
-    work.y[n] = work.origin_mm[1] + (work.first[1] + j) * work.cell_mm[1] + (axis == 1 ? way : 0);
-    work.z[n] = work.origin_mm[2] + (work.first[2] + k) * work.cell_mm[2] + (axis == 2 ? way : 0);
+  pad(list);
+  for (int n = 0; n < list.count; n += W) {
+    const EdgeLanes edges(list.edge + n);
+    const Doubles reach = load_lanes<Doubles>(list.reach + n);
+    store_lanes(edges.place(work, 0) + edges.way(0) * reach, work.x + n);
+    store_lanes(edges.place(work, 1) + edges.way(1) * reach, work.y + n);
+    store_lanes(edges.place(work, 2) + edges.way(2) * reach, work.z + n);
   }
 }
 
@@ -306,28 +355,38 @@ inline bool may_reach(const BrickWork& work, const Sweep& sweep, unsigned edge, 
 
 /// Lists edges that keep a crossing whose crossing may lie inside of the sweep.
 inline void list_kept(BrickWork& work, const Sweep& sweep, const OpenBrick& brick) {
-  const bool sifts = (is_dear(sweep.kind) || sweep.kind == Sweep::Kind::kArc) && !work.additive;
-  work.kept_edges.count = 0;
-  for_each_edge(work.kept, work.columns, [&](unsigned edge) {
-    const double reach = reach_of(work, brick, edge), start = start_of(work, edge);
-    if (!(reach > start)) return;
-    if (sifts && !may_reach(work, sweep, edge, reach)) return;
-    push(work.kept_edges, edge, start, reach);
-  });
+  EdgeList& kept = work.kept_edges;
+  kept.count = 0;
+  list_edges(work.kept, work.columns, kept);
+  reach_crossings(work, brick, kept);
+  const bool is_dear_now = is_dear(sweep.kind) && !has_cheap_twin(work, sweep);
+  if (work.additive || (!is_dear_now && sweep.kind != Sweep::Kind::kArc)) return;
+  int left = 0;
+  for (int n = 0; n < kept.count; ++n) {
+    const bool may = may_reach(work, sweep, kept.edge[n], kept.reach[n]);
+    put(kept, left, kept.edge[n], kept.start[n], kept.reach[n]);
+    left += may ? 1 : 0;
+  }
+  kept.count = left;
 }
 
 /// Takes in F at the crossings of kept_edges, which is `off` more or less: deeper ones are pushed
 /// to open_edges, those that it does not decide stay listed.
 inline void push_deeper(BrickWork& work, double off) {
-  EdgeList& kept = work.kept_edges;
+  EdgeList &kept = work.kept_edges, &open = work.open_edges;
   int left = 0;
-  for (int n = 0; n < kept.count; ++n) {
-    if (work.f[n] + off < -work.place_slack_mm) {
-      push(work.open_edges, kept.edge[n], kept.start[n], kept.reach[n]);
-    } else if (work.f[n] - off < -work.place_slack_mm) {
-      kept.edge[left] = kept.edge[n];
-      kept.start[left] = kept.start[n];
-      kept.reach[left++] = kept.reach[n];
+  for (int first = 0; first < kept.count; first += W) {
+    if (!any(load_lanes<Doubles>(work.f + first) - all(off) < all(-work.place_slack_mm))) continue;
+    const int end = first + W < kept.count ? first + W : kept.count;
+    for (int n = first; n < end; ++n) {
+      const bool is_deeper = work.f[n] + off < -work.place_slack_mm;
+      const bool may_be = work.f[n] - off < -work.place_slack_mm;
+      const std::uint16_t edge = kept.edge[n];
+      const double start = kept.start[n], reach = kept.reach[n];
+      put(open, open.count, edge, start, reach);
+      open.count += is_deeper ? 1 : 0;
+      put(kept, left, edge, start, reach);
+      left += may_be && !is_deeper ? 1 : 0;
     }
   }
   kept.count = left;
@@ -388,35 +447,41 @@ inline void find_lost(BrickWork& work, const Sweep& sweep, const OpenBrick& bric
   if (!work.seeks_films) return;
   std::uint8_t far[kEdges / 8];
   if (!sift_lost(work, sweep, brick, far)) return;
-  for_each_edge(far, brick.columns, [&](unsigned edge) {
-    const double reach = reach_of(work, brick, edge);
-    const SolidEnd end(edge);
-    const int b = end.block();
-    if (work.blocks[b] == BrickWork::kMixed) {
-      const bool is_bounded = work.bend_beside_mm[b] < kUnbounded;
-      const double most = is_bounded
-                              ? plane_at(work, b, end, edge, reach) + work.bend_beside_mm[b]
-                              : work.node_f[end.node()] + reach;
-      if (most <= kLeastFilm_mm) return;
+  list_edges(far, brick.columns, lost);
+  reach_crossings(work, brick, lost);
+  int left = 0;
+  if (is_dear(sweep.kind)) {
+    for (int n = 0; n < lost.count; ++n) {
+      const SolidEnd end(lost.edge[n]);
+      const bool is_within = work.blocks[end.block()] == BrickWork::kMixed &&
+                             work.node_f[end.node()] + lost.reach[n] <= kLeastFilm_mm;
+      put(lost, left, lost.edge[n], 0, lost.reach[n]);
+      left += is_within ? 0 : 1;
     }
-    push(lost, edge, 0, reach);
-  });
+    lost.count = left;
+  }
   if (lost.count == 0) return;
   place_crossings(work, lost);
   lanes_distance(sweep, lost.count, work.x, work.y, work.z, work.f);
-  int left = 0;
+  left = 0;
   for (int n = 0; n < lost.count; ++n) {
-    if (!(work.f[n] > kLeastFilm_mm + work.place_slack_mm)) continue;
-    lost.edge[left] = lost.edge[n];
-    lost.reach[left++] = lost.reach[n];
+    const bool may_be = work.f[n] > kLeastFilm_mm + work.place_slack_mm;
+    put(lost, left, lost.edge[n], 0, lost.reach[n]);
+    left += may_be ? 1 : 0;
   }
   lost.count = left;
 }
 
 inline void open_fresh(BrickWork& work) {
-  for_each_edge(work.fresh, work.columns, [&](unsigned edge) {
-    push(work.open_edges, edge, start_of(work, edge), work.cell_mm[axis_of(edge)]);
-  });
+  EdgeList& open = work.open_edges;
+  list_edges(work.fresh, work.columns, open);
+  pad(open);
+  for (int n = work.deeper; n < open.count; n += W) {
+    store_lanes(EdgeLanes(open.edge + n).length(work), open.reach + n);
+    store_lanes(all(0.0), open.start + n);
+  }
+  for (int n = work.deeper; work.at_end && n < open.count; ++n)
+    open.start[n] = start_of(work, open.edge[n]);
 }
 
 /// What a crossing along Z adds to its column's height.
@@ -424,35 +489,54 @@ inline std::int32_t height_part(unsigned edge, int place) {
   return (edge & kLowerIsSolid) ? place : kEdgeParts - place;
 }
 
+/// Takes over the crossings of the open edges from `first` on.
+inline void write_group(BrickWork& work, const Roots& roots, int first, std::uint32_t cut_id,
+                        OpenBrick& brick) {
+  const EdgeList& open = work.open_edges;
+  Crossings found;
+  write_crossings(roots, EdgeLanes(open.edge + first), found);
+  const int count = open.count - first < W ? open.count - first : W;
+  for (int l = 0; l < count; ++l) {
+    const unsigned edge = open.edge[first + l];
+    const int e = edge_of(edge);
+    const bool was = first + l < work.deeper;
+    work.removed += (was ? brick.share[e] : 0) - found.share[l];
+    if (axis_of(edge) == 2)
+      work.heights[e >> 3 & 63] +=
+          (was ? height_part(edge, brick.place[e]) : 0) - height_part(edge, found.place[l]);
+    brick.place[e] = static_cast<std::uint16_t>(found.place[l]);
+    brick.share[e] = found.share[l];
+    brick.direction[e] = found.direction[l];
+    brick.id[e] = cut_id;
+  }
+}
+
 /// Finds the crossings of open_edges, and takes them over.
 inline void write_open(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
   EdgeList& open = work.open_edges;
-  for (int n = open.count; n < padded(open.count); ++n) {
-    open.edge[n] = open.edge[0];
-    open.start[n] = open.start[0];
-    open.reach[n] = open.reach[0];
-  }
+  pad(open);
+  const bool enters =
+      !work.at_end &&
+      (sweep.kind == Sweep::Kind::kSphere ||
+       (sweep.body->shape == ToolBody::Shape::kBall && sweep.kind != Sweep::Kind::kArc));
   Roots roots[kRootGroups];
+  int firsts[kRootGroups], count = 0;
   for (int first = 0; first < open.count; first += W) {
-    const int group = first / W % kRootGroups, left = (open.count - first + W - 1) / W;
-    if (group == 0) solve(work, sweep, first, left < kRootGroups ? left : kRootGroups, roots);
-    Crossings found;
-    write_crossings(roots[group], open.edge + first, found);
-    const int count = open.count - first < W ? open.count - first : W;
-    for (int l = 0; l < count; ++l) {
-      const unsigned edge = open.edge[first + l];
-      const int e = edge_of(edge);
-      const bool was = first + l < work.deeper;
-      work.removed += (was ? brick.share[e] : 0) - found.share[l];
-      if (axis_of(edge) == 2)
-        work.heights[e >> 3 & 63] +=
-            (was ? height_part(edge, brick.place[e]) : 0) - height_part(edge, found.place[l]);
-      brick.place[e] = static_cast<std::uint16_t>(found.place[l]);
-      brick.share[e] = found.share[l];
-      brick.direction[e] = found.direction[l];
-      brick.id[e] = sweep.cut_id;
+    Roots& r = roots[count];
+    begin_roots(work, open, first, r);
+    if (enters && !enter(sweep, r)) {
+      write_group(work, r, first, sweep.cut_id, brick);
+      continue;
     }
+    firsts[count++] = first;
+    if (count < kRootGroups && first + W < open.count) continue;
+    search_roots(work, sweep, count, roots);
+    for (int g = 0; g < count; ++g) write_group(work, roots[g], firsts[g], sweep.cut_id, brick);
+    count = 0;
   }
+  if (count == 0) return;
+  search_roots(work, sweep, count, roots);
+  for (int g = 0; g < count; ++g) write_group(work, roots[g], firsts[g], sweep.cut_id, brick);
 }
 
 /// Takes the nodes' new state over, and measures what is gone with it.
@@ -470,11 +554,15 @@ inline void take_columns(BrickWork& work, OpenBrick& brick) {
                                      kEdgeParts;
     }
   }
-  for_each_edge(work.lost, brick.columns, [&](unsigned edge) {
+  EdgeList& lost = work.kept_edges;  // which is done with
+  lost.count = 0;
+  list_edges(work.lost, brick.columns, lost);
+  for (int n = 0; n < lost.count; ++n) {
+    const unsigned edge = lost.edge[n];
     const int e = edge_of(edge);
     work.removed += brick.share[e];
     if (axis_of(edge) == 2) work.heights[e >> 3 & 63] += height_part(edge, brick.place[e]);
-  });
+  }
   work.removed += cleared * kNodeVolume;
 }
 

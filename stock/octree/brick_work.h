@@ -63,9 +63,8 @@ struct BrickWork {
   int cleared = 0;                       ///< own nodes that it takes
   /// F in the brick is nowhere less than at + x, y, z . place of any block; where that is known.
   double plane_at[8], plane_x[8], plane_y[8], plane_z[8];
-  /// Of balls: F in a block is nowhere more than its plane and this; within a cell around it, plane
-  /// and bend_beside_mm. kUnbounded: who knows.
-  double bend_mm[8], bend_beside_mm[8];
+  /// Of balls: F in a block is nowhere more than its plane and this. kUnbounded: who knows.
+  double bend_mm[8];
   double node_f[kNodeNumbers];  ///< F at solid nodes of mixed blocks, or a bound below it
   /// Edges by their bytes, [axis][j][i]: crossed before and after, only after, only before.
   std::uint8_t kept[kEdges / 8], fresh[kEdges / 8], lost[kEdges / 8];

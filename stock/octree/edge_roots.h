@@ -60,26 +60,52 @@ struct Roots {
   Masks active;  ///< while the root is looked for
 };
 
-inline void begin_roots(const BrickWork& work, const EdgeList& list, int first, Roots& r) {
-  alignas(64) double x[W], y[W], z[W], dx[W], dy[W], dz[W], length[W], active[W];
-  for (int l = 0; l < W; ++l) {
-    const unsigned edge = list.edge[first + l];
-    const SolidEnd end(edge);
-    x[l] = work.place_mm[0][end.i];
-    y[l] = work.place_mm[1][end.j];
-    z[l] = work.place_mm[2][end.k];
-    const EdgeWay& way = kEdgeWays[edge >> 9];
-    dx[l] = way.along[0];
-    dy[l] = way.along[1];
-    dz[l] = way.along[2];
-    length[l] = work.cell_mm[axis_of(edge)];
-    active[l] = first + l < list.count ? 1.0 : 0.0;
+/// Eight edges by their numbers.
+struct EdgeLanes {
+  Ints up;       ///< all ones: the solid end is the upper one
+  Ints x, y, z;  ///< all ones: it lies along this axis
+  Ints i, j, k;  ///< the solid end
+  explicit EdgeLanes(const std::uint16_t* edges) {
+    Ints edge;
+    widen(edges, edge);
+    const auto is = [](const Ints& value, int number) { return value == all<Ints>(number); };
+    up = is(edge & all<Ints>(int{kLowerIsSolid}), 0);
+    const Ints axis = edge >> 9 & all<Ints>(3);
+    x = is(axis, 0), y = is(axis, 1), z = is(axis, 2);
+    // All ones are -1.
+    i = (edge >> 3 & all<Ints>(7)) - (x & up);
+    j = (edge >> 6 & all<Ints>(7)) - (y & up);
+    k = (edge & all<Ints>(7)) - (z & up);
   }
-  r.x = load_lanes<Doubles>(x), r.y = load_lanes<Doubles>(y), r.z = load_lanes<Doubles>(z);
-  r.dx = load_lanes<Doubles>(dx), r.dy = load_lanes<Doubles>(dy);
-  r.dz = load_lanes<Doubles>(dz);
-  r.length = load_lanes<Doubles>(length);
-  r.active = all(0.0) < load_lanes<Doubles>(active);
+  KERF_LANES Doubles place(const BrickWork& work, int axis) const {
+    Doubles node;
+    widen_to((axis == 0 ? i : axis == 1 ? j : k) + all<Ints>(work.first[axis]), node);
+    return all(work.origin_mm[axis]) + node * all(work.cell_mm[axis]);
+  }
+  /// 1 or -1 along its axis, from the solid end; 0 along the others.
+  KERF_LANES Doubles way(int axis) const {
+    const Ints one = all<Ints>(1), sign = one + (up & all<Ints>(-2));
+    Doubles out;
+    widen_to((axis == 0 ? x : axis == 1 ? y : z) & sign, out);
+    return out;
+  }
+  KERF_LANES Doubles length(const BrickWork& work) const {
+    const auto part = [&](const Ints& is, double cell) {
+      Doubles one;
+      widen_to(is & all<Ints>(1), one);
+      return one * all(cell);
+    };
+    return part(x, work.cell_mm[0]) + part(y, work.cell_mm[1]) + part(z, work.cell_mm[2]);
+  }
+};
+
+inline void begin_roots(const BrickWork& work, const EdgeList& list, int first, Roots& r) {
+  const EdgeLanes edges(list.edge + first);
+  r.x = edges.place(work, 0), r.y = edges.place(work, 1), r.z = edges.place(work, 2);
+  r.dx = edges.way(0), r.dy = edges.way(1), r.dz = edges.way(2);
+  r.length = edges.length(work);
+  const double numbers[W] = {0, 1, 2, 3, 4, 5, 6, 7};
+  r.active = load_lanes<Doubles>(numbers) < all(double(list.count - first));
   r.start = r.tried = r.low = load_lanes<Doubles>(list.start + first);
   r.high = load_lanes<Doubles>(list.reach + first);
   r.f_low = r.slope = r.nx = r.ny = r.nz = all(0.0);
@@ -114,24 +140,53 @@ KERF_LANES bool narrow_roots(const Gradients& g, int step, Roots& r) {
   return any(r.active);
 }
 
-/// A sphere that goes straight sweeps a cylinder with round ends, which a line enters once: by that
-/// of the three which is nearest to where it is entered. Lanes that are not found so stay active.
-KERF_LANES bool enter_sphere(const Sweep& s, Roots& r) {
+/// Edges as a body of revolution sees them that goes straight: from its axis or centre, all along
+/// its path or square to it.
+struct RoundWay {
+  Points from, way;  ///< solid ends, and the way along the edges from there
+  Doubles way2;      ///< its length, squared
+  Vec3 step;
+  double per_step2;
+
+  RoundWay(const Sweep& s, const Roots& r) : step(s.step), per_step2(s.per_step2) {
+    from_origin(s, {r.x, r.y, r.z}, from);
+    way = {r.dx, r.dy, r.dz};
+    way2 = all(1.0);
+  }
+  /// Seen along the spindle: for the wall of a ball nose.
+  KERF_LANES void flatten(const Sweep& s) {
+    const Doubles up = along(s.w, from.x, from.y, from.z), rise = along(s.w, way.x, way.y, way.z);
+    from = {from.x - up * all(s.w.x), from.y - up * all(s.w.y), from.z - up * all(s.w.z)};
+    way = {way.x - rise * all(s.w.x), way.y - rise * all(s.w.y), way.z - rise * all(s.w.z)};
+    way2 = all(1.0) - rise * rise;
+    step = {s.length_u * s.u.x, s.length_u * s.u.y, s.length_u * s.u.z};
+    per_step2 = s.length_u > 0 ? 1 / (s.length_u * s.length_u) : 0;
+  }
+};
+
+/// What a sphere (or a circle) sweeps that goes straight has two round ends, and a line enters it
+/// once: by that of its three parts which is nearest to where it is entered. Lanes stay active that
+/// are not found so, or that `counts` turns down, which gets the places.
+template <class Counts>
+KERF_LANES void enter_round(const Sweep& s, const RoundWay& round, Roots& r, const Counts& counts) {
   constexpr int kGuesses = 3;
+  constexpr double kAlong = 1e-9;  // lines along the path or the wall are not seen to enter
   const double radius = s.body->elements[0].radius - s.shrink_mm;
-  const Doubles zero = all(0.0), one = all(1.0), per = all(s.per_step2);
-  const Doubles x = r.x - all(s.origin_mm.x), y = r.y - all(s.origin_mm.y),
-                z = r.z - all(s.origin_mm.z);
-  const Doubles start = along(s.step, x, y, z) * per;  // part of the path, not held to 0..1
-  const Doubles d = along(s.step, r.dx, r.dy, r.dz), turn = d * per;
+  const Points &from = round.from, &way = round.way;
+  const Vec3& step = round.step;
+  const Doubles zero = all(0.0), one = all(1.0), per = all(round.per_step2);
+  const Doubles start = along(step, from.x, from.y, from.z) * per;  // not held to 0..1
+  const Doubles d = along(step, way.x, way.y, way.z), turn = d * per;
   Doubles part = unit_clamp(start + all(0.5) * (r.start + r.high) * turn);
+  Masks open = r.active;
   for (int guess = 0; guess < kGuesses; ++guess) {
     const Masks inside = (zero < part) & (part < one);
-    // Of the ends the way from their centres, of the cylinder square to its axis.
+    // Of the ends the way from their centres, of the middle square to the path.
     const Doubles at = choose(inside, start, part);
-    const Doubles mx = x - at * all(s.step.x), my = y - at * all(s.step.y),
-                  mz = z - at * all(s.step.z);
-    const Doubles a = one - choose(inside, turn * d, zero), b = mx * r.dx + my * r.dy + mz * r.dz,
+    const Doubles mx = from.x - at * all(step.x), my = from.y - at * all(step.y),
+                  mz = from.z - at * all(step.z);
+    const Doubles a = round.way2 - choose(inside, turn * d, zero),
+                  b = mx * way.x + my * way.y + mz * way.z,
                   c = mx * mx + my * my + mz * mz - all(radius * radius);
     const Doubles inner = b * b - a * c;
     // The form that does not cancel: b is negative where a line enters.
@@ -139,18 +194,44 @@ KERF_LANES bool enter_sphere(const Sweep& s, Roots& r) {
     const Doubles next = unit_clamp(start + t * turn);
     const Masks stays =
         (inside & (zero < next) & (next < one)) | (~inside & (next <= part) & (part <= next));
-    const Masks found = r.active & stays & (zero <= inner);
+    Masks found = open & stays & (zero <= inner) & (all(kAlong) < a);
+    open = open & ~found;
     const Doubles low = greater(r.start, lesser(t, r.high));
+    found = found & counts(low);
     r.low = choose(found, low, r.low);
     // Not of length 1, as nothing asks for.
-    r.nx = choose(found, x + low * r.dx - next * all(s.step.x), r.nx);
-    r.ny = choose(found, y + low * r.dy - next * all(s.step.y), r.ny);
-    r.nz = choose(found, z + low * r.dz - next * all(s.step.z), r.nz);
+    r.nx = choose(found, from.x + low * way.x - next * all(step.x), r.nx);
+    r.ny = choose(found, from.y + low * way.y - next * all(step.y), r.ny);
+    r.nz = choose(found, from.z + low * way.z - next * all(step.z), r.nz);
     r.active = r.active & ~found;
-    if (!any(r.active)) return false;
+    if (!any(open)) return;
     part = next;
   }
-  return true;
+}
+
+/// Roots of ball noses and spheres have a closed form, but for walls that turn. False: all are
+/// found.
+KERF_LANES bool enter(const Sweep& s, Roots& r) {
+  RoundWay round(s, r);
+  const Points from = round.from, way = round.way;
+  const auto at = [&](const Doubles& t) {
+    return Points{from.x + t * way.x, from.y + t * way.y, from.z + t * way.z};
+  };
+  if (s.kind == Sweep::Kind::kSphere) {
+    enter_round(s, round, r, [&](const Doubles& t) { return t <= t; });
+  } else if (s.kind == Sweep::Kind::kTurn) {
+    enter_round(s, round, r, [&](const Doubles& t) { return is_below_wall(s, at(t)); });
+  } else {
+    const auto is_wall = [&](const Doubles& t) {
+      Doubles du, v;
+      return sees_wall(s, at(t), du, v);
+    };
+    enter_round(s, round, r, [&](const Doubles& t) { return ~is_wall(t); });
+    if (!any(r.active)) return false;
+    round.flatten(s);
+    enter_round(s, round, r, is_wall);
+  }
+  return any(r.active);
 }
 
 /// Where a path of added material begins outside of the blank, the surface is the blank's face.
@@ -236,16 +317,11 @@ struct OpenRoots {
   }
 };
 
-/// Of `count` groups of edges.
-inline void solve(const BrickWork& work, const Sweep& sweep, int first, int count, Roots* found) {
-  for (int g = 0; g < count; ++g) begin_roots(work, work.open_edges, first + g * W, found[g]);
+/// Of `count` groups of edges that have begun.
+inline void search_roots(const BrickWork& work, const Sweep& sweep, int count, Roots* found) {
   const auto bits = [](int groups) { return (1u << groups) - 1; };
   if (count == 1 || !is_dear(sweep.kind)) {
     unsigned open = bits(count);
-    if (sweep.kind == Sweep::Kind::kSphere && !work.at_end) {
-      for (int g = 0; g < count; ++g)
-        if (!enter_sphere(sweep, found[g])) open &= ~(1u << g);
-    }
     for (int step = 0; open != 0; ++step) open = step_roots(work, sweep, step, open, found);
     return;
   }
@@ -285,26 +361,25 @@ KERF_LANES Ints steps_of(const Floats& value) {
 }
 
 /// Into parts of an edge from its lower node.
-KERF_LANES void write_places(const Roots& r, std::int32_t* places) {
+KERF_LANES Ints places_of(const Roots& r) {
   const Doubles one = all(1.0), part = r.low / r.length;
   const Doubles lower = choose(all(0.0) < r.dx + r.dy + r.dz, part, one - part);
   const Doubles scaled = lesser(greater(lower * all(double{kEdgeParts}), all(0.0)), all(65536.0));
   Ints whole;
   whole_of(scaled, whole);
-  alignas(64) double exact[W];
-  store_lanes(scaled, exact);
-  store_lanes(whole, places);
-  for (int l = 0; l < W; ++l) {
-    const std::int32_t place = places[l] + (exact[l] - places[l] >= 0.5 ? 1 : 0);
-    places[l] = place > kEdgeParts - 1 ? kEdgeParts - 1 : place;
-  }
+  Doubles back;
+  widen_to(whole, back);
+  const Doubles rounded = back + choose(all(0.5) <= scaled - back, one, all(0.0));
+  whole_of(lesser(rounded, all(double{kEdgeParts - 1})), whole);
+  return whole;
 }
 
 /// pack_direction() of brick.h, and then unpack_direction() along the edge, for its share of volume
 /// (OpenBrick::share): the same steps.
-inline void write_crossings(const Roots& r, const std::uint16_t* edges, Crossings& out) {
+inline void write_crossings(const Roots& r, const EdgeLanes& edges, Crossings& out) {
   constexpr float kScale = static_cast<float>(kNodeVolume / kEdgeParts);
-  write_places(r, out.place);
+  const Ints place = places_of(r);
+  store_lanes(place, out.place);
   const Floats zero = all<Floats>(0.0f), one = all<Floats>(1.0f), full = all<Floats>(32767.0f);
   Floats nx, ny, nz;  // out of the material: against the sweep's
   narrow_to(r.nx, nx);
@@ -327,16 +402,11 @@ inline void write_crossings(const Roots& r, const std::uint16_t* edges, Crossing
   const Floats ux = choose(is_back, (one - magnitude(py)) * sign_of(px), px);
   const Floats uy = choose(is_back, (one - magnitude(px)) * sign_of(py), py);
   const Floats scale = one / root(ux * ux + uy * uy + pz * pz);
-  alignas(64) std::int32_t axes[W], beyonds[W];
-  for (int l = 0; l < W; ++l) {
-    axes[l] = edges[l] >> 9 & 3;
-    const std::int32_t beyond = out.place[l] - kEdgeParts / 2;
-    beyonds[l] = (edges[l] & static_cast<int>(kLowerIsSolid)) != 0 ? beyond : -beyond;
-  }
-  const Ints axis = load_lanes<Ints>(axes);
-  const Floats along = choose(axis < all<Ints>(1), ux, choose(axis < all<Ints>(2), uy, pz)) * scale;
+  const Floats along = choose(edges.x, ux, choose(edges.y, uy, pz)) * scale;
+  // Of upper ends with the other sign: -n is ~n + 1, and all ones are -1.
+  const Ints from_middle = place - all<Ints>(kEdgeParts / 2);
   Floats beyond;
-  convert(load_lanes<Ints>(beyonds), beyond);
+  convert((from_middle ^ edges.up) - edges.up, beyond);
   Ints share;
   convert(along * along * all<Floats>(kScale) * beyond, share);
   store_lanes(share, out.share);

@@ -82,6 +82,10 @@ KERF_LANES Pair<V> operator|(const Pair<V>& a, const Pair<V>& b) {
   return {a.low | b.low, a.high | b.high};
 }
 template <class V>
+KERF_LANES Pair<V> operator^(const Pair<V>& a, const Pair<V>& b) {
+  return {a.low ^ b.low, a.high ^ b.high};
+}
+template <class V>
 KERF_LANES Pair<V> operator~(const Pair<V>& a) {
   return {~a.low, ~a.high};
 }
@@ -92,6 +96,15 @@ KERF_LANES auto operator<(const Pair<V>& a, const Pair<V>& b) {
 template <class V>
 KERF_LANES auto operator<=(const Pair<V>& a, const Pair<V>& b) {
   return Pair<decltype(a.low <= b.low)>{a.low <= b.low, a.high <= b.high};
+}
+
+template <class V>
+KERF_LANES auto operator==(const Pair<V>& a, const Pair<V>& b) {
+  return Pair<decltype(a.low == b.low)>{a.low == b.low, a.high == b.high};
+}
+template <class V>
+KERF_LANES Pair<V> operator>>(const Pair<V>& a, int bits) {
+  return {a.low >> bits, a.high >> bits};
 }
 
 // Each for one part, and for pairs.
@@ -238,6 +251,23 @@ KERF_LANES void whole_of(const Doubles& from, Ints& to) {
   store_lanes(from, wide);
   for (int l = 0; l < 8; ++l) slim[l] = static_cast<std::int32_t>(wide[l]);
   to = load_lanes<Ints>(slim);
+#endif
+}
+
+/// Eight whole numbers as doubles.
+KERF_LANES void widen_to(const Ints& from, Doubles& to) {
+#if defined(__AVX512DQ__) && defined(__AVX512F__)
+  to = _mm512_maskz_cvtepi32_pd(0xff, reinterpret_cast<__m256i>(from));
+#elif defined(__AVX2__)
+  const __m256i whole = reinterpret_cast<__m256i>(from);
+  to.low = _mm256_cvtepi32_pd(_mm256_castsi256_si128(whole));
+  to.high = _mm256_cvtepi32_pd(_mm256_extracti128_si256(whole, 1));
+#else
+  std::int32_t slim[8];
+  alignas(64) double wide[8];
+  store_lanes(from, slim);
+  for (int l = 0; l < 8; ++l) wide[l] = slim[l];
+  to = load_lanes<Doubles>(wide);
 #endif
 }
 

@@ -116,7 +116,8 @@ struct NodeList {
                    upper = blocks.upper.at + blocks.upper.x * x + blocks.upper.y * y;
       bits = bits & blocks.nodes(lower, upper);
       if (blocks.are_bounded && any_bits(bits)) {
-        const Ints within = bits & blocks.nodes(lower + blocks.lower.bend, upper + blocks.upper.bend);
+        const Ints within =
+            bits & blocks.nodes(lower + blocks.lower.bend, upper + blocks.upper.bend);
         gone = gone | within;
         bits = bits & ~within;
       }

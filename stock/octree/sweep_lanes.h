@@ -163,19 +163,36 @@ KERF_LANES void sphere(const Sweep& s, const Points& points, Gradients& out) {
   round_value<kGradients>(s, way, root(way.x * way.x + way.y * way.y + way.z * way.z), out);
 }
 
+/// Of points from a ball's origin: is its cylinder nearest, and not the ball? `du`, `v`: from the
+/// nearest axis of it, along u and v.
+KERF_LANES Masks sees_wall(const Sweep& s, const Points& p, Doubles& du, Doubles& v) {
+  const double per_u = s.length_u > 0 ? 1 / s.length_u : 0;
+  const Doubles u = along(s.u, p.x, p.y, p.z), w = along(s.w, p.x, p.y, p.z);
+  v = along(s.v, p.x, p.y, p.z);
+  // Nearest seen along the spindle; that is where the cylinder above the ball is nearest.
+  const Doubles above = unit_clamp(u * all(per_u));
+  du = u - above * all(s.length_u);
+  return all(0.0) <= w - above * all(s.length_w);
+}
+
+/// Of points from a turning ball's origin: are they below its cylinder, on all of its way?
+KERF_LANES Masks is_below_wall(const Sweep& s, const Points& p) {
+  // The height above the centre is a parabola along the way.
+  const double bulge = s.step.x * s.turn.x + s.step.y * s.turn.y + s.step.z * s.turn.z;
+  const Doubles first = along(s.w, p.x, p.y, p.z);
+  const Doubles x = p.x - all(s.step.x), y = p.y - all(s.step.y), z = p.z - all(s.step.z);
+  const Doubles last = along(s.w, x, y, z) + along(s.turn, x, y, z);
+  return greater(first, last) + all(bulge > 0 ? 0.25 * bulge : 0.0) <= all(0.0);
+}
+
 /// Ball noses: bits below the cylinder are those of the sphere.
 template <bool kGradients>
 KERF_LANES void ball(const Sweep& s, const Points& points, Gradients& out) {
   Points p, way;
   from_origin(s, points, p);
   from_path(s, p, way);
-  const double per_u = s.length_u > 0 ? 1 / s.length_u : 0;
-  const Doubles u = along(s.u, p.x, p.y, p.z), v = along(s.v, p.x, p.y, p.z),
-                w = along(s.w, p.x, p.y, p.z), zero = all(0.0);
-  // Nearest seen along the spindle; that is where the cylinder above the ball is nearest.
-  const Doubles above = unit_clamp(u * all(per_u));
-  const auto by_cylinder = zero <= w - above * all(s.length_w);
-  const Doubles du = u - above * all(s.length_u);
+  Doubles du, v;
+  const Masks by_cylinder = sees_wall(s, p, du, v);
   const Doubles distance2 =
       choose(by_cylinder, du * du + v * v, way.x * way.x + way.y * way.y + way.z * way.z);
   if constexpr (kGradients) {
@@ -392,10 +409,6 @@ inline void search(const Path& path, const Points* points, int count, Gradients*
 /// A ball nose whose spindle turns: what is below the cylinder all the way sees a sphere.
 template <bool kGradients>
 inline void turning_ball(const Sweep& s, const Points* points, int count, Gradients* out) {
-  const Vec3 end_w = s.w + s.turn;
-  // The height above the centre is a parabola along the way.
-  const double bulge = s.step.x * s.turn.x + s.step.y * s.turn.y + s.step.z * s.turn.z;
-  const Doubles more = all(bulge > 0 ? 0.25 * bulge : 0.0), zero = all(0.0);
   Points others[kSearchGroups];
   Masks below[kSearchGroups];
   int which[kSearchGroups], left = 0;
@@ -404,10 +417,7 @@ inline void turning_ball(const Sweep& s, const Points* points, int count, Gradie
     from_origin(s, points[g], p);
     from_path(s, p, way);
     round_value<kGradients>(s, way, root(way.x * way.x + way.y * way.y + way.z * way.z), out[g]);
-    const Doubles first = along(s.w, p.x, p.y, p.z);
-    const Doubles last =
-        along(end_w, p.x - all(s.step.x), p.y - all(s.step.y), p.z - all(s.step.z));
-    below[left] = greater(first, last) + more <= zero;
+    below[left] = is_below_wall(s, p);
     if (!any(~below[left])) continue;
     others[left] = points[g];
     which[left++] = g;
