@@ -292,16 +292,32 @@ struct TurnPath {
   }
 };
 
-/// The next place to try between a (falling) and b (rising): in turn where the tangents meet (finds
-/// kinks) and where the slopes' straight line is 0 (finds smooth minima). `gap`: F at the lower end
-/// is too great by at most this.
-KERF_LANES void next_trial(const Trial& a, const Trial& b, double bend_mm, bool tangents, Trial& c,
+/// Which place is tried next.
+enum class Try : std::uint8_t {
+  kLevel,    ///< where the slopes' straight line is 0: finds smooth minima
+  kBeyond,   ///< a little beyond that, seen from the nearer end: brings the other end near, too
+  kTangents  ///< where the tangents meet: finds kinks
+};
+
+/// The way from one end to the other within which F may bend as it likes.
+inline double near_width(double bend_mm) {
+  return bend_mm > 0 ? __builtin_sqrt(0.5 * kSweepSlack_mm / bend_mm) : 0;
+}
+
+/// The next place to try between a (falling) and b (rising). `gap`: F at the lower end is too great
+/// by at most this.
+KERF_LANES void next_trial(const Trial& a, const Trial& b, double bend_mm, Try which, Trial& c,
                            Doubles& gap) {
   const Doubles width = b.s - a.s;
   const Doubles steepness = greater(b.slope - a.slope, all(kTiny));
   const Doubles meet = (a.f - b.f + b.slope * width) / steepness;
   gap = lesser(a.f, b.f) - (a.f + a.slope * meet) + all(bend_mm) * width * width;
-  const Doubles at = tangents ? meet : (all(0.0) - a.slope) * width / steepness;
+  Doubles at = meet;
+  if (which != Try::kTangents) at = (all(0.0) - a.slope) * width / steepness;
+  if (which == Try::kBeyond) {
+    const Doubles margin = all(near_width(bend_mm));
+    at = choose(at <= width - at, all(2.0) * at + margin, all(2.0) * at - width - margin);
+  }
   c.s = a.s + greater(all(1e-3) * width, lesser(all(0.999) * width, at));
 }
 
@@ -347,7 +363,12 @@ template <class Path>
 KERF_LANES bool step_search(const Path& path, int step, Search<Path>& s) {
   Trial c;
   Doubles gap;
-  next_trial(s.a, s.b, path.sweep.bend_mm, step % 2 != 0, c, gap);
+  // Without a bend tangents alone show that a minimum is one.
+  constexpr Try kTurns[3] = {Try::kLevel, Try::kBeyond, Try::kTangents};
+  const Try which = path.sweep.bend_mm > 0 ? kTurns[step % 3]
+                    : step % 2 == 0        ? Try::kLevel
+                                           : Try::kTangents;
+  next_trial(s.a, s.b, path.sweep.bend_mm, which, c, gap);
   // A path that rises from its start or falls to its end has its minimum there.
   const Doubles zero = all(0.0);
   const Masks searching = (s.a.slope < zero) & (zero < s.b.slope) & (all(kSweepSlack_mm) < gap);
