@@ -98,7 +98,7 @@ void MillingStage::finish(bool whole) {
   fixtures_.finish();
   machine_.finish();
   pieces_.finish();
-  changes_.finish(whole);
+  changes_.finish(whole && !site_.cut_short);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
   for (const auto& [move, tool] : reversed_down_) {

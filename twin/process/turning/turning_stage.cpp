@@ -87,7 +87,7 @@ void TurningStage::go_on_from(const Process& process) {
 }
 
 void TurningStage::finish(bool whole) {
-  changes_.finish(whole);
+  changes_.finish(whole && !site_.cut_short);
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
