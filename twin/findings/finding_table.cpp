@@ -285,8 +285,9 @@ constexpr std::array<FindingRow, kFindingIds> kRows{{
      tr_noop("The tool is in a full slot deeper than it is wide."),
      tr_noop("Shallower passes, or a way that takes part of the width (trochoidal).")},
     {Id::kPlunge, "plunge", kError, Topic::kCutter,
-     tr_noop("A tool that does not cut at its centre (centre=no) goes down into material with it."),
-     tr_noop("A hole drilled before; a helix wider than the tool.")},
+     tr_noop("A tool that does not cut at its centre (centre=no) goes down into material with it: "
+             "straight, or more steeply than its ramp= allows."),
+     tr_noop("A hole drilled before; a ramp or a helix, as steep as ramp= of the tool says.")},
     {Id::kRampSteep, "ramp-steep", kWarning, Topic::kCutter,
      tr_noop("The way down into material is steeper than the tool's maker allows (ramp=)."),
      tr_noop("A longer ramp, a wider helix.")},

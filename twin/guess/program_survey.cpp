@@ -10,6 +10,7 @@
 #include "base/translate.h"
 #include "stock/cutter/scan.h"
 #include "twin/job/blank_choice.h"
+#include "twin/job/tool_number.h"
 #include "twin/motion/motion_geometry.h"
 
 namespace kerf {
@@ -25,6 +26,11 @@ Diagnostic missing_error(std::string message, std::string hint) {
   d.message = std::move(message);
   d.hint = std::move(hint);
   return d;
+}
+
+std::string hint_of_tool(int number) {
+  const std::string as_elsewhere = hint_of_number(number);
+  return fmt::format("--tool {}=SHAPE{}{}", number, as_elsewhere.empty() ? "" : "; ", as_elsewhere);
 }
 
 /// "Mild Steel 3mm 45A"; 0: the name does not say it.
@@ -217,7 +223,7 @@ Diagnostics ProgramSurvey::missing() const {
                      "--tool says which it is"),
                   "--tool 1=SHAPE")
             : missing_error(trf("--no-guess: nothing is known of tool {}", number),
-                            fmt::format("--tool {}=SHAPE", number)));
+                            hint_of_tool(number)));
   }
   for (const auto& [number, why] : half_known_) {
     out.push_back(missing_error(trf("--no-guess: tool {} is not known for sure: {}", number,

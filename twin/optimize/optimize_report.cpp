@@ -157,7 +157,7 @@ std::string shared_text(const OptimizeReport& report) {
     const OptimizeReport::Shared& one = report.shared[i];
     out += out.empty() ? tr("shared    ") : indent();
     out +=
-        trf("line {} is run {} times: {:.0f} mm/min for the fullest cut, where the lightest "
+        trf("line {} makes {} motions: {:.0f} mm/min for the fullest cut, where the lightest "
             "could have {:.0f} mm/min\n",
             one.line, one.motions, one.slowest_mm_per_min, one.fastest_mm_per_min);
   }
@@ -194,8 +194,9 @@ std::string optimize_text(const OptimizeReport& report) {
                        report.unrolled_passes, report.unrolled_calls, report.unrolled_lines.size());
   }
   if (report.split_blocks > 0)
-    out += indent() + trf("{} blocks are {} pieces now; lines are those of the new program\n",
-                          report.split_blocks, report.split_pieces);
+    out += indent() + trf("{} now, in {} pieces; lines are those of the new program\n",
+                          trnf("{} block is divided", "{} blocks are divided", report.split_blocks),
+                          report.split_pieces);
   out += left_text(report) + shared_text(report) + time_text(report) + peaks_text(report);
   return out;
 }

@@ -91,6 +91,9 @@ class CutStage : private StepSink {
   /// .. until here: tool uses and totals begin with the motion that is taken next; the clock goes
   /// on.
   void release_reports() { report_from_ = taken_; }
+  /// The program goes on behind what is taken: the interpreter has refused a block, or the lines
+  /// that are asked for end there. Before finish(), of a program that counts as whole nonetheless.
+  void cut_short() { site_.cut_short = true; }
   /// The program is over, or stopped before its end (`whole` = false).
   void finish(bool whole = true);
   /// Once `stop` is requested nothing more is cut; looked at before each motion, and within a

@@ -54,9 +54,10 @@ struct ProcessSite {
   EngagementLog* engagement = nullptr;  ///< CutStage::log_engagement()
   LoadListener* loads = nullptr;        ///< CutStage::hear_loads()
   BlankKind blank = BlankKind::kUnjudged;
-  bool timed = false;    ///< motions come with their times: CutStage::take_timed()
-  bool watched = false;  ///< CutStage::watch_machine()
-  bool holding = false;  ///< nothing is reported on yet
+  bool timed = false;      ///< motions come with their times: CutStage::take_timed()
+  bool watched = false;    ///< CutStage::watch_machine()
+  bool holding = false;    ///< nothing is reported on yet
+  bool cut_short = false;  ///< CutStage::cut_short()
   /// How the machine turns tool and workpiece, whatever the model takes; null: nobody has said.
   std::shared_ptr<const MachineKinematics> kinematics{};
   WorkpieceFrame frame{};                   ///< where the workpiece lies in the machine

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/translate.h"
-#include "twin/process/tool_tells.h"
+#include "twin/job/tool_number.h"
 
 namespace kerf {
 

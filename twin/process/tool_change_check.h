@@ -22,7 +22,7 @@ class ToolChangeCheck {
   void end_tool() { waiting_ = {}; }
   /// What went on before is not reported on.
   void forget_events() { waiting_.fed = false; }
-  /// The program is over (`whole`) or stopped before its end.
+  /// The program is over (`whole`), or goes on behind what was seen of it.
   void finish(bool whole) {
     if (whole) tell_not_changed();
   }

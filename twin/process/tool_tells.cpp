@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/translate.h"
+#include "twin/job/tool_number.h"
 #include "twin/process/finding_at.h"
 
 namespace kerf {
@@ -21,16 +22,6 @@ ToolUse use_of(const ResolvedTool& tool) {
     use.teeth = tool.cutter->teeth();
   }
   return use;
-}
-
-std::string hint_of_number(int number) {
-  constexpr int kPlaces = 100;
-  const int tool = number / kPlaces;
-  if (tool <= 0 || tool >= kPlaces || tool != number % kPlaces) return {};
-  return trf(
-      "LinuxCNC reads tool {} there; if it is meant for tool {} with offset {}, as on other "
-      "controls: T{} M6 G43",
-      number, tool, tool, tool);
 }
 
 void tell_tool(const ResolvedTool& tool, const Motion& m, FindingLog& log) {

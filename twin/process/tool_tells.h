@@ -16,9 +16,6 @@ namespace kerf {
 /// Of a tool that has done nothing yet; without an origin where there is no cutter: that is told
 /// when it first feeds.
 ToolUse use_of(const ResolvedTool& tool);
-/// What T0101 and T1212 mean here and on Fanuc's lathes, which have tool and offset in one number;
-/// empty: it is no such number.
-std::string hint_of_number(int number);
 /// tool-assumed and tool-guessed, where it first moves.
 void tell_tool(const ResolvedTool& tool, const Motion& motion, FindingLog& log);
 /// Which of `uses` is of that tool and that shape: a program may give a number several shapes, each

@@ -4,6 +4,7 @@
 
 #include "base/translate.h"
 #include "twin/findings/finding_json.h"
+#include "twin/job/load_text.h"
 
 namespace kerf {
 namespace {
@@ -58,10 +59,10 @@ Json turned_row(const TurningEngagement& tool) {
 
 std::string turned_text(const TurningEngagement& tool) {
   std::string out =
-      trf("T{}: {:.2f} mm deep on average, {:.2f} at most; {:.3f} mm a turn on average, "
-          "{:.3f} at most; chips of {:.3f} mm; {:.3g} mm3/s on average",
+      trf("T{}: {:.2f} mm deep on average, {:.2f} mm at most; {:.3f} mm a turn on average, "
+          "{:.3f} mm at most; chips of {:.3f} mm; {} mm3/s on average",
           tool.tool, tool.mean(tool.depth_sum_mm2), tool.depth_most_mm, tool.mean(tool.feed_sum),
-          tool.feed_most_mm, tool.mean(tool.chip_sum), tool.rate_mm3_per_s());
+          tool.feed_most_mm, tool.mean(tool.chip_sum), load_text(tool.rate_mm3_per_s()));
   const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s);
   return out + (air.empty() ? "" : "; " + air) + "\n";
 }
@@ -76,12 +77,12 @@ std::string more_text(const EngagementOfTool& tool) {
     add(trf("{:.1f} mm down slopes of {:.1f} degrees at most", sums.ramp_mm,
             kDegrees * sums.ramp_most_rad));
   if (sums.cut_s > 0)
-    add(trf("{:.3g} mm3/s on average, {:.3g} at most", sums.rate_mm3_per_s(),
-            sums.rate_most_mm3_per_s));
+    add(trf("{} mm3/s on average, {} mm3/s at most", load_text(sums.rate_mm3_per_s()),
+            load_text(sums.rate_most_mm3_per_s)));
   if (const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s); !air.empty())
     add(air);
   if (const Scallops& crests = tool.scallops; crests.count > 0)
-    add(trf("crests of {:.2g} mm between its passes, {:.2g} at most", crests.p95_mm,
+    add(trf("crests of {:.2g} mm between its passes, {:.2g} mm at most", crests.p95_mm,
             crests.most_mm));
   return out.empty() ? out : std::string(10, ' ') + out + "\n";
 }
@@ -154,8 +155,8 @@ std::string engagement_text(const Engagement& engagement) {
   if (none && engagement.unmeasured_mm <= 0) out += label + tr("no tool was in material\n");
   if (engagement.unmeasured_mm >= kShown_mm)
     out += label + trf("not measured: {:.0f} mm of undercutting tools, of tools that turn about on "
-                       "their way, in a model that cannot be asked, or where no look has seen "
-                       "what was removed\n",
+                       "their way, of threads, of arcs in G18 and G19 of a mill, in a model that "
+                       "cannot be asked, or where no look has seen what was removed\n",
                        engagement.unmeasured_mm);
   return out;
 }

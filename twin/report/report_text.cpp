@@ -121,7 +121,7 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
                  use.peak_mm3_per_s);
       if (use.chip.is_known()) {
         out +=
-            trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} at most (line {}), "
+            trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} mm at most (line {}), "
                 "cutting speed {:.3g} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
                 use.chip.speed_m_per_min);

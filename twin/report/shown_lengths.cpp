@@ -44,8 +44,10 @@ constexpr std::array<ShownUnit, 10> kUnits{{
 }};
 constexpr ShownUnit kPlace{"", "", 1 / kInch_mm, 1, 3};
 
-constexpr std::array<std::string_view, 10> kShapes{
-    "flat", "ball", "bull", "vee", "taper", "drill", "lollipop", "tslot", "dovetail", "kerf"};
+constexpr std::array<std::string_view, 16> kShapes{
+    "flat",     "ball", "bull", "vee",    "taper", "drill",      "lollipop", "tslot",
+    "dovetail", "kerf", "turn", "groove", "part",  "facegroove", "thread",   "bore"};
+constexpr std::string_view kInsert = "iso";  // by its designation
 constexpr std::array<std::string_view, 6> kLengthOptions{"cell",   "kerf",  "pierce",
                                                          "margin", "below", "tolerance"};
 // TRANSLATORS: between the ends of a range, "0.05 to 0.2 mm"
@@ -73,11 +75,13 @@ std::optional<Written> number_at(std::string_view text) {
     while (at < text.size() && is_digit(text[at])) ++at;
     out.digits = static_cast<int>(at - point - 1);
   }
-  // Small ones are written as 1e-05.
-  if (text.substr(at).starts_with("e-") && at + 2 < text.size() && is_digit(text[at + 2])) {
+  // Small ones are written as 1e-05, and large ones as 2.07e+03.
+  const std::string_view behind = text.substr(at);
+  if ((behind.starts_with("e-") || behind.starts_with("e+")) && behind.size() > 2 &&
+      is_digit(behind[2])) {
+    out.digits = behind[1] == '-' ? 6 : 0;
     at += 2;
     while (at < text.size() && is_digit(text[at])) ++at;
-    out.digits = 6;
   }
   out.length = at;
   const auto read = std::from_chars(text.data(), text.data() + at, out.value);
@@ -138,8 +142,11 @@ class Translation {
 
   bool shape() {
     const std::size_t colon = left_.find(':');
-    if (colon == left_.npos || colon + 1 >= left_.size() || !is_digit(left_[colon + 1]) ||
-        std::find(kShapes.begin(), kShapes.end(), left_.substr(0, colon)) == kShapes.end()) {
+    if (colon == left_.npos || colon + 1 >= left_.size()) return false;
+    const std::string_view name = left_.substr(0, colon);
+    const bool is_insert = name == kInsert && is_letter(left_[colon + 1]);
+    if (!is_insert && (!is_digit(left_[colon + 1]) ||
+                       std::find(kShapes.begin(), kShapes.end(), name) == kShapes.end())) {
       return false;
     }
     std::size_t end = colon;
@@ -181,10 +188,12 @@ class Translation {
       if (!from) break;
       std::size_t end = at + 1 + from->length;
       std::string place = left_[at] + shown_number(*from, kPlace);
-      if (left_.substr(end).starts_with("..")) {
-        if (const std::optional<Written> to = number_at(left_.substr(end + 2))) {
-          place += ".." + shown_number(*to, kPlace);
-          end += 2 + to->length;
+      for (const std::string_view dots : {"..", " .. "}) {
+        if (!left_.substr(end).starts_with(dots)) continue;
+        if (const std::optional<Written> to = number_at(left_.substr(end + dots.size()))) {
+          place += dots;
+          place += shown_number(*to, kPlace);
+          end += dots.size() + to->length;
         }
       }
       if (end < left_.size() && is_word(left_[end])) break;
@@ -221,6 +230,7 @@ class Translation {
         out_ += ' ';
         out_ += unit->inch;
         pass(at + 1 + unit->word.size());
+        range_behind(*unit);
         return true;
       }
       const std::string_view rest = left_.substr(at);
@@ -233,6 +243,23 @@ class Translation {
       at += between.size();
     }
     return false;
+  }
+
+  /// " (0.0105 to 0.106)", " (0.0105 to 0.106, line 37)" behind "0.0224 mm".
+  void range_behind(const ShownUnit& unit) {
+    if (!left_.starts_with(" (")) return;
+    const std::optional<Written> low = number_at(left_.substr(2));
+    if (!low) return;
+    std::size_t at = 2 + low->length;
+    const std::string_view to = left_.substr(at).starts_with(tr(kTo)) ? tr(kTo) : kTo;
+    if (!left_.substr(at).starts_with(to)) return;
+    at += to.size();
+    const std::optional<Written> high = number_at(left_.substr(at));
+    if (!high) return;
+    at += high->length;
+    if (at >= left_.size() || (left_[at] != ')' && left_[at] != ',')) return;
+    out_ += fmt::format(" ({}{}{}", shown_number(*low, unit), to, shown_number(*high, unit));
+    pass(at);
   }
 
   std::string_view left_;

@@ -15,8 +15,9 @@ namespace kerf {
 ///
 ///     2.31 mm, 300 x 200 x 20 mm, 0.05 to 0.2 mm     also m, mm2, cm2, mm3, cm3, mm/min, mm/s,
 ///                                                    mm/s2, mm3/s (which becomes in3/min)
-///     X12.40 Y3.00 Z-1.20, X0..100, X5 Z75 mm        places, ranges, offsets: X, Y and Z alone
-///     flat:6, drill:5:118, taper:3:5:flute=20        SHAPE texts
+///     X12.40 Y3.00 Z-1.20, X0..100, Z0 .. -5, Z75 mm places, ranges, offsets: X, Y and Z alone
+///     0.0224 mm (0.0105 to 0.106, line 37)           a range right behind it
+///     flat:6, drill:5:118, iso:CNMG432:max_ap=0.5    SHAPE texts
 ///     --cell 0.02                                    options that take a length
 ///
 /// Everything else stays, so a number whose unit is not beside it stays mm: texts give each of

@@ -98,8 +98,8 @@ std::string text_of(const TurnedFeature& f) {
 
 std::string text_of(const MeasuredThread& t) {
   std::string out = trf(
-      "Z{:.2f} .. {:.2f}: {} thread, pitch {:.4g} mm, major {:.3f}, pitch diameter {:.3f}, minor "
-      "{:.3f} mm",
+      "Z{:.2f} .. {:.2f}: {} thread, pitch {:.4g} mm, major {:.3f} mm, pitch diameter {:.3f} mm, "
+      "minor {:.3f} mm",
       t.high_z_mm + 0.0, t.low_z_mm + 0.0, t.is_internal ? tr("inner") : tr("outer"), t.pitch_mm(),
       t.major_mm, t.pitch_diameter_mm, t.minor_mm);
   if (t.starts > 1) out += trf(", {} starts", t.starts);

@@ -253,6 +253,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   const bool whole = pass == Pass::kWhole;
   const Clock::time_point finish_start = Clock::now();
   stage.judge_blank(judged_blank(options_, front_, report_.program, !has_error(interpreter_)));
+  if (has_error(interpreter_) || window_.over()) stage.cut_short();
   // Where a sheet's program was stopped it may not have come to cut yet.
   stage.finish(whole && !(front_.is_sheet() && window_.over()));
   const bool cut_whole = whole && !stage.stopped();  // the last motions come with the end

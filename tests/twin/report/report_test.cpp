@@ -147,7 +147,7 @@ TEST(ReportText, WhatEachToothHasToDo) {
   use.chip.add(0.02, 0.01, 1, {0, 11});
   use.chip.speed_m_per_min = 125.66;
   EXPECT_TRUE(
-      has("2 teeth: feed per tooth 0.046 mm, 0.1 at most (line 9), cutting speed 126 m/min"));
+      has("2 teeth: feed per tooth 0.046 mm, 0.1 mm at most (line 9), cutting speed 126 m/min"));
   const Json tool = Json::parse(json_text(r))["tools"][0];
   EXPECT_EQ(tool["engagement"]["feed_per_tooth_mm"], 0.1);
   EXPECT_EQ(tool["engagement"]["feed_per_tooth_mean_mm"], 0.046);

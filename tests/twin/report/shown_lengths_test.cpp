@@ -28,6 +28,13 @@ TEST(ShownLengths, WithTheirUnitsBesideThem) {
   EXPECT_EQ(inch("removed 30.000 cm3, peak 40.0 mm3/s, 11.28 cm2 left"),
             "removed 1.8307 in3, peak 0.1465 in3/min, 1.748 in2 left");
   EXPECT_EQ(inch("feed 12.35 m, traverse 0.0 mm\n"), "feed 486.2 in, traverse 0 in\n");
+  EXPECT_EQ(inch("its tip bends by 0.0254 mm (0.0127 to 0.127, line 37); 801 N (376 to 1322)"),
+            "its tip bends by 0.001 in (0.0005 to 0.005, line 37); 801 N (376 to 1322)");
+  EXPECT_EQ(inch("takes 25.4 mm (12.7 to 50.8); 3 mm (1 to 3 teeth), 3 mm (of 4), 3 mm (1 to x)"),
+            "takes 1 in (0.5 to 2); 0.118 in (1 to 3 teeth), 0.118 in (of 4), 0.118 in (1 to x)");
+  EXPECT_EQ(inch("Z0.508 .. -25.400: diameter 50.8 mm, X-2.54..2.54, X5 .. and"),
+            "Z0.02 .. -1: diameter 2 in, X-0.1..0.1, X0.197 .. and");
+  EXPECT_EQ(inch("2.54e+01 mm wide"), "1 in wide");
   EXPECT_EQ(inch("0.396875 mm, -0.004 mm, 0.0001 mm"), "0.015625 in, -0.00016 in, 0.0000039 in");
 }
 
@@ -36,6 +43,9 @@ TEST(ShownLengths, ShapesAndOptionsToo) {
             "taken for flat:0.25, and (drill:0.125:118) fed");
   EXPECT_EQ(inch("taper:3.175:5:flute=25.4:shank=6.35:holder=25.4x50.8+50.8x25.4"),
             "taper:0.125:5:flute=1:shank=0.25:holder=1x2+2x1");
+  EXPECT_EQ(
+      inch("1   iso:CNMG432:holder=25.4x101.6:max_ap=0.508 (--tool), thread:60:1.27: a thread"),
+      "1   iso:CNMG432:holder=1x4:max_ap=0.02 (--tool), thread:60:0.05: a thread");
   EXPECT_EQ(inch("--cell 0.0254 would do (4 million cells)"),
             "--cell 0.001 would do (4 million cells)");
   EXPECT_EQ(inch("--tool 1=flat:25.4: the program never uses tool 1"),
@@ -55,6 +65,7 @@ TEST(ShownLengths, WhatIsNoLengthStays) {
                                  "--cell: the value",
                                  "--tool-table FILE",
                                  "flat: a word",
+                                 "thread: 60, iso: what, part: 2",
                                  "3 mmm",
                                  "Y2K",
                                  "Z1a",

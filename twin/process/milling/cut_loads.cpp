@@ -138,11 +138,12 @@ void CutLoads::close_air() {
 /// What needs neither teeth nor a material.
 void CutLoads::judge_way(const Part& part) {
   const EngagementLook& look = part.look;
-  if (look.cuts_centre && !tool_->traits.cuts_centre) note(kDown, part, look.deep_mm, {});
   const double down_rad = look.is_plunge ? kPi / 2 : part.way.down_rad;
   const std::optional<double>& most = tool_->traits.most_ramp_deg;
-  if (look.cuts_centre && most && down_rad > *most / kDegrees + kOverAngle_rad)
-    note(kRamp, part, down_rad, {});
+  const bool is_gentle = most && down_rad <= *most / kDegrees + kOverAngle_rad;
+  if (look.cuts_centre && !tool_->traits.cuts_centre && !is_gentle)
+    note(kDown, part, look.deep_mm, {});
+  if (look.cuts_centre && most && !is_gentle) note(kRamp, part, down_rad, {});
   if (look.is_plunge) return;
   const bool is_slot = look.angle_rad >= EngagementSums::kFullSlot_rad;
   if (wish_.material && is_slot && look.deep_mm > 2 * tool_->radius_mm * kOver)

@@ -75,8 +75,9 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   double start_s = step.start_s;
   for (const CutMove& move : divided_) {
     const double duration_s = step.duration_s * way_length_mm(move) / ways;
+    const CutMove looked_at = as_circle(move);
     const EngagementMeter::Taken& taken =
-        engagement_->take({cutting(), move, near, m.spindle == SpindleState::kCounterclockwise,
+        engagement_->take({cutting(), looked_at, near, m.spindle == SpindleState::kCounterclockwise,
                            m.source, start_s, duration_s});
     start_s += duration_s;
     if (taken.pass != EngagementLog::kNoPass) flight.pass = taken.pass;

@@ -13,6 +13,7 @@
 #include "twin/motion/motion_geometry.h"
 #include "twin/process/kept_moves.h"
 #include "twin/process/milling/probe_contact.h"
+#include "twin/process/milling/way_profile.h"
 
 namespace kerf {
 namespace {
@@ -97,7 +98,7 @@ void MillingStage::finish(bool whole) {
   fixtures_.finish();
   machine_.finish();
   pieces_.finish();
-  changes_.finish(whole);
+  changes_.finish(whole && !site_.cut_short);
   if (whole && !site_.progress.is_stopped()) report_nothing_cut();
   report_coarse_cells();
   for (const auto& [move, tool] : reversed_down_) {
@@ -400,7 +401,7 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
   std::size_t pushed = 0;
   for (CutMove& move : divided_) {
     move.id = id;
-    if (engagement_) engagement_->note_cut(move);
+    if (engagement_) engagement_->note_cut(as_circle(move));
     pieces_.before(cutting(), move, by);
     moves_.push_back(move);
     if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];

@@ -9,6 +9,10 @@
 namespace kerf {
 namespace {
 
+constexpr double kSameRadius_mm = 1e-6;
+/// A circle through both ends of an arc that nearly closes would lie far from it in between.
+constexpr double kMostThroughEnds_rad = 1.5 * kPi;
+
 Motion motion_of(const CutMove& move) {
   Motion motion;
   motion.kind = move.arc ? MotionKind::kArc : MotionKind::kFeed;
@@ -63,6 +67,30 @@ CutMove part_of(const CutMove& whole, double from, double to) {
   if (to < 1) part.to_mm = point_at(motion, to);
   if (part.arc) part.arc->sweep_rad *= to - from;
   return part;
+}
+
+CutMove as_circle(const CutMove& move) {
+  if (!move.arc || std::abs(move.arc->axis.z) < 1 - 1e-12) return move;
+  const CutArc& arc = *move.arc;
+  const Vec2 center(arc.center_mm);
+  const Vec2 begin = Vec2(move.from_mm) - center, end = Vec2(move.to_mm) - center;
+  const double inner = glm::length(begin), outer = glm::length(end);
+  const double off = std::abs(inner - outer);
+  if (off < kSameRadius_mm || off > kRounded_mm || inner < kRounded_mm || outer < kRounded_mm)
+    return move;
+  CutMove circle = move;
+  const double sweep = arc.sweep_rad * arc.axis.z;
+  if (std::abs(sweep) <= kMostThroughEnds_rad) {
+    const Vec2 half = 0.5 * (end - begin);
+    const Vec2 at = center + 0.5 * (begin + end) + Vec2(-half.y, half.x) / std::tan(sweep / 2);
+    circle.arc->center_mm.x = at.x, circle.arc->center_mm.y = at.y;
+    return circle;
+  }
+  const double radius = 0.5 * (inner + outer);
+  const Vec2 from = center + begin * (radius / inner), to = center + end * (radius / outer);
+  circle.from_mm.x = from.x, circle.from_mm.y = from.y;
+  circle.to_mm.x = to.x, circle.to_mm.y = to.y;
+  return circle;
 }
 
 }  // namespace kerf

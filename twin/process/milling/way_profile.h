@@ -31,4 +31,10 @@ double way_length_mm(const CutMove& move);
 /// Of its way, from one fraction to another.
 CutMove part_of(const CutMove& whole, double from, double to);
 
+/// Of an arc about Z whose ends lie up to kRounded_mm more or less far from its centre, as the
+/// digits of I and J leave it: a circle with the same sweep, half of that off at most, and a tenth
+/// on half a turn and less. Other moves as they are.
+CutMove as_circle(const CutMove& move);
+constexpr double kRounded_mm = 0.05;
+
 }  // namespace kerf

@@ -22,9 +22,10 @@
 
 namespace kerf {
 
-/// Is told of each part of a feed move how deep the tool cuts and what it feeds. What is too much
-/// is told once a tool, where it is worst, when the program is over: a warning where the low end of
-/// a range is beyond the limit, a note where the high end alone is. One thread.
+/// Is told of each part of a feed move how deep the tool cuts and what it feeds. Of drills and
+/// other tools on the axis it works out what drilling takes, if they say their teeth. What is too
+/// much is told once a tool, where it is worst, when the program is over: a warning where the low
+/// end of a range is beyond the limit, a note where the high end alone is. One thread.
 class TurnLoads {
  public:
   explicit TurnLoads(FindingLog& log) : log_(log) {}
@@ -67,11 +68,22 @@ class TurnLoads {
   struct Tool {
     int number = 0;
     std::string shape;
-    std::optional<double> most_feed_mm;
+    std::optional<double> most_feed_mm;  ///< a turn; of drills and the like per tooth
+    bool is_insert = true;
+    double radius_mm = 0, point_deg = 180;  ///< of drills and the like
+    int teeth = 0;                          ///< 0: not known
+    std::optional<double> rake_deg;
     std::shared_ptr<ToolLoads> loads = std::make_shared<ToolLoads>();
     std::array<Worst, kTroubles> worst{};
   };
   void add(const Part& part, CutLoad& told);
+  void add_drilling(const Part& part, double seconds, CutLoad& told);
+  struct Forces {
+    ValueRange force_n, torque_nm, power_kw;
+  };
+  void add_chip(const Part& part, double seconds, double chip_mm, double speed_m_per_min,
+                CutLoad& told);
+  void add_forces(const Part& part, double seconds, const Forces& forces, CutLoad& told);
   void tell(const Part& part, CutLoad& load, LoadListener& listener) const;
   void note(Trouble trouble, const Part& part, double seconds, const ValueRange& range);
   void tell(const Tool& tool);

@@ -26,6 +26,20 @@ namespace {
 /// Motion::unknown_to: X, Y and Z.
 constexpr std::uint8_t kAllUnknown = 7;
 
+/// In the mean of the time. Under G96 the speed follows the diameter, and under G95 the tool is
+/// the longer at a place the slower the bar turns there.
+double mean_rpm(const Motion& m) {
+  if (m.from_mm.x == m.to_mm.x && m.kind != MotionKind::kArc) return spindle_rpm_at(m, 0);
+  constexpr int kPlaces = 32;
+  double sum = 0;
+  for (int k = 0; k < kPlaces; ++k) {
+    const double rpm = spindle_rpm_at(m, (k + 0.5) / kPlaces);
+    if (rpm <= 0) return 0;
+    sum += m.feed_per_rev ? 1 / rpm : rpm;
+  }
+  return m.feed_per_rev ? kPlaces / sum : sum / kPlaces;
+}
+
 }  // namespace
 
 TurningStage::TurningStage(ProcessSite& site)
@@ -87,7 +101,7 @@ void TurningStage::go_on_from(const Process& process) {
 }
 
 void TurningStage::finish(bool whole) {
-  changes_.finish(whole);
+  changes_.finish(whole && !site_.cut_short);
   if (whole && !site_.progress.is_stopped()) {
     checks_.finish();
     holding_.finish();
@@ -498,9 +512,12 @@ void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const
   way.cut_mm = std::min(piece.way_mm, way.length_mm);
   way.depth_mm = piece.depth_mm;
   way.removed_mm3 = piece.removed_mm3;
-  const double rpm = 0.5 * (spindle_rpm_at(m, 0) + spindle_rpm_at(m, 1));
+  const double rpm = mean_rpm(m);
   const bool turns = m.spindle != SpindleState::kStopped && rpm > 0 && step.duration_s > 0;
   if (turns) way.feed_mm_per_rev = way.length_mm / (step.duration_s / 60 * rpm);
+  // Under G95 the axes follow the spindle: no turn takes more than is written.
+  if (m.feed_per_rev && m.feed_mm_per_min > 0)
+    way.feed_mm_per_rev = std::min(way.feed_mm_per_rev, m.feed_mm_per_min);
   const double sine = piece.edge_mm > 0 ? piece.edge_across_mm / piece.edge_mm : 0;
   way.chip_mm = way.feed_mm_per_rev * sine;
   site_.engagement->add_turned(mounted_->number, *mounted_->cutter, way);
@@ -524,6 +541,9 @@ void TurningStage::take_load(const Motion& m, const TimedStep& step, const Turne
                        : from_mm >= to_mm ? 0
                                           : 1;
   part.rpm = spindle_rpm_at(m, std::clamp(share, 0.0, 1.0));
+  // A feed a minute is most of a turn where it turns slowest.
+  if (!m.feed_per_rev && part.rpm > 0)
+    part.way.feed_mm_per_rev = way.length_mm / (step.duration_s / 60 * part.rpm);
   part.source = m.source;
   part.start_s = step.start_s;
   part.from_mm = m.from_mm;
