@@ -58,8 +58,8 @@ void EngagementScan::weigh_cells(double cell_mm) {
 
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
-void EngagementScan::take_cell(const Station& station, const CellOver& over,
-                               CellFront& front) const {
+inline void EngagementScan::take_cell(const Station& station, const CellOver& over,
+                                      CellFront& front) const {
   const Vec2& arm = over.arm;
   const double r = std::max(over.radius_mm, 0.25 * front.across * cell_);
   const double ahead = glm::dot(arm, station.ahead);
@@ -88,18 +88,61 @@ void EngagementScan::take_cell(const Station& station, const CellOver& over,
   if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
 }
 
+/// A cell that is higher than what the cutter leaves anywhere near it.
+inline void EngagementScan::look_at_cell(const Station& station, const CellRow& row, int i,
+                                         double height, CellFront& front) const {
+  const double x = row.x_of(i), r2 = x * x + row.y * row.y;
+  // No higher than the profile somewhat farther in.
+  if (height <= row.tip + low_lift_[static_cast<std::size_t>(r2 * row.to_part)]) return;
+  CellOver over{{x, row.y}, std::sqrt(r2)};
+  over.lift_mm = lift_of(over.radius_mm);
+  const double surface = row.tip + over.lift_mm + kThinnestFilm_mm;
+  if (height <= surface) return;
+  const Vec2 middle = station.center + over.arm;
+  if (station.is_near_end && !is_on_way(station, middle)) return;
+  if (row.slope > 0 &&
+      slope_of(over.radius_mm) * glm::dot(over.arm, station.ahead) <= row.slope * over.radius_mm)
+    return;
+  over.depth_mm = behind_itself(middle, behind_held(middle, height)) - surface;
+  if (over.depth_mm > 0) take_cell(station, over, front);
+}
+
+/// Of eight cells side by side not one is looked at where the highest of them is below the profile
+/// at the nearest.
+void EngagementScan::take_row(const Station& station, const CellRow& row, CellFront& front) const {
+  const HeightGrid::Row heights(*heights_, row.j);
+  constexpr int kOnce = HeightGrid::Row::kOfHighest;
+  const auto each_to = [&](int from, int to) {
+    for (int i = from; i <= to; i += front.each)
+      look_at_cell(station, row, i, static_cast<double>(heights.kept(i)), front);
+  };
+  if (front.each > 1) return each_to(row.first, row.last);
+  for (int i = row.first; i <= row.last;) {
+    const int begin = i - i % kOnce, end = std::min(begin + kOnce - 1, row.last);
+    if (begin + kOnce > heights_->nx()) return each_to(i, row.last);
+    const double nearest = std::max({row.x_of(i), -row.x_of(end), 0.0});
+    const double r2 = nearest * nearest + row.y * row.y;
+    const double least = row.tip + least_lift_[static_cast<std::size_t>(r2 * row.to_part)];
+    if (static_cast<double>(heights.highest_from(begin)) > least) each_to(i, end);
+    i = end + 1;
+  }
+}
+
 /// All cells before it, row by row.
 void EngagementScan::take_cells(const Station& station, CellFront& front) const {
   const Box& box = heights_->bounds_mm();
   const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
-  const double tip = std::max(station.tip_z, box.min.z), slope = rise_ > 0 ? rise_ / length_ : 0;
   const double reach = engaged_ < radius_ ? engaged_ : radius_;
   const Vec2 center = station.center - Vec2(box.min), ahead = station.ahead;
-  const double to_part = kLifts / (radius_ * radius_);
-  const auto row = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
-  const int last_j = std::min(row(center.y + reach), heights_->ny() - 1);
+  CellRow row;
+  row.tip = std::max(station.tip_z, box.min.z);
+  row.slope = rise_ > 0 ? rise_ / length_ : 0;
+  row.to_part = kLifts / (radius_ * radius_);
+  row.cell_x = cell_x, row.center_x = center.x;
+  const auto row_at = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
+  const int last_j = std::min(row_at(center.y + reach), heights_->ny() - 1);
   const int each = front.each, rows = front.rows;
-  for (int j = std::max(0, row(center.y - reach)); j <= last_j; j += rows) {
+  for (int j = std::max(0, row_at(center.y - reach)); j <= last_j; j += rows) {
     const double y = (j + 0.5) * cell_y - center.y;
     const double half2 = reach * reach - y * y;
     if (half2 <= 0) continue;
@@ -109,28 +152,12 @@ void EngagementScan::take_cells(const Station& station, CellFront& front) const 
     if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
     if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
     if (std::abs(ahead.x) <= 1e-9 && limit > 0) continue;
-    int first_i = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
-    first_i += (each - first_i % each + j / rows % each) % each;
-    const int last_i =
+    row.first = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
+    if (each > 1) row.first += (each - row.first % each + j / rows % each) % each;
+    row.last =
         std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
-    const HeightGrid::Row heights(*heights_, j);
-    for (int i = first_i; i <= last_i; i += each) {
-      const auto height = static_cast<double>(heights.kept(i));
-      const double x = (i + 0.5) * cell_x - center.x, r2 = x * x + y * y;
-      // No higher than the profile somewhat farther in.
-      if (height <= tip + low_lift_[static_cast<std::size_t>(r2 * to_part)]) continue;
-      CellOver over{{x, y}, std::sqrt(r2)};
-      over.lift_mm = lift_of(over.radius_mm);
-      const double surface = tip + over.lift_mm + kThinnestFilm_mm;
-      const Vec2 middle = station.center + over.arm;
-      if (height <= surface) continue;
-      if (station.is_near_end && !is_on_way(station, middle)) continue;
-      if (slope > 0 &&
-          slope_of(over.radius_mm) * glm::dot(over.arm, ahead) <= slope * over.radius_mm)
-        continue;
-      over.depth_mm = behind_itself(middle, behind_held(middle, height)) - surface;
-      if (over.depth_mm > 0) take_cell(station, over, front);
-    }
+    row.j = j, row.y = y;
+    take_row(station, row, front);
   }
 }
 
