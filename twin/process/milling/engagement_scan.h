@@ -277,11 +277,21 @@ class EngagementScan {
       share[low + 1] += height_rad * beyond;
     }
   };
-  /// A cell over the cutter's surface.
-  struct CellOver {
-    Vec2 arm{0};                        ///< from the cutter's middle
-    double radius_mm = 0, lift_mm = 0;  ///< of that place, and the cutter's surface over its tip
-    double depth_mm = 0;
+  /// Cells before the cutter, seen from its middle. There are kManyCells * sqrt(2) at most to
+  /// either side of that in a row.
+  struct CellBatch {
+    static constexpr int kMost = 256;
+    using Each = std::array<double, kMost>;
+    int count = 0;
+    Each x, y, height;
+    Each radius, lift;         ///< of their places, and the cutter's surface there over its tip
+    Each depth;                ///< at first the surface, then how deep it is in material
+    Each ahead, beside, step;  ///< along and beside the way, and the direction
+    Each under;                ///< what the cutter leaves there, over its tip
+    void move(int from, int to) {
+      x[to] = x[from], y[to] = y[from], height[to] = height[from];
+      radius[to] = radius[from], lift[to] = lift[from], depth[to] = depth[from];
+    }
   };
   /// Cells of a row, seen from the cutter's middle.
   struct CellRow {
@@ -292,10 +302,12 @@ class EngagementScan {
     double x_of(int i) const { return (i + 0.5) * cell_x - center_x; }
   };
   bool is_fine() const;
-  void look_at_cell(const Station& station, const CellRow& row, int i, double height,
-                    CellFront& front) const;
-  void take_row(const Station& station, const CellRow& row, CellFront& front) const;
-  void take_cell(const Station& station, const CellOver& over, CellFront& front) const;
+  void collect_row(const CellRow& row, int each, CellBatch& cells) const;
+  void keep_over(const Station& station, const CellRow& row, CellBatch& cells) const;
+  void place_cells(const Station& station, const CellFront& front, CellBatch& cells) const;
+  void take_cell(const CellBatch& cells, int n, CellFront& front) const;
+  void take_batch(const Station& station, const CellRow& row, CellBatch& cells,
+                  CellFront& front) const;
   void take_cells(const Station& station, CellFront& front) const;
   void weigh_cells(double cell_mm);
   double beyond(const Station& station, const Vec2& arm, const Vec2& out, double cells) const;
