@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -70,14 +71,16 @@ class HeightGrid {
         nx_(nx),
         ny_(ny),
         tiles_x_((nx + kTileCells - 1) / kTileCells),
+        cell_x_mm_(bounds_mm.size().x / nx),
+        cell_y_mm_(bounds_mm.size().y / ny),
         tiles_(std::move(tiles)),
         keeper_(std::move(keeper)) {}
 
   const Box& bounds_mm() const { return bounds_mm_; }
   int nx() const { return nx_; }
   int ny() const { return ny_; }
-  double cell_x_mm() const { return bounds_mm_.size().x / nx_; }
-  double cell_y_mm() const { return bounds_mm_.size().y / ny_; }
+  double cell_x_mm() const { return cell_x_mm_; }
+  double cell_y_mm() const { return cell_y_mm_; }
   float floor_mm() const { return static_cast<float>(bounds_mm_.min.z); }
 
   int tiles_x() const { return tiles_x_; }
@@ -104,11 +107,32 @@ class HeightGrid {
       return tiles_[x / kTileCells]
                    [first_ + x % kTileCells / kBlockX * (kBlockX * kBlockY) + x % kBlockX];
     }
+    /// The highest of so many cells from there on, all of which the grid contains; `i`: a multiple
+    /// of that.
+    static constexpr int kOfHighest = 8;
+    float highest_from(int i) const {
+      const auto x = static_cast<unsigned>(i);
+      const float* at = tiles_[x / kTileCells] + first_ + x % kTileCells * kBlockY;
+      float highest = std::max(at[0], at[1]);
+      for (int block = 1; block < kOfHighest / kBlockX; ++block) {
+        at += kBlockX * kBlockY;
+        highest = std::max(highest, std::max(at[0], at[1]));
+      }
+      return highest;
+    }
 
    private:
     const float* const* tiles_;
     std::size_t first_;
   };
+
+  /// Of (i, j), (i + 1, j), (i, j + 1) and (i + 1, j + 1), all of which the grid contains.
+  std::array<float, 4> heights_of_four(int i, int j) const {
+    const Row lower(*this, j), upper(*this, j + 1);
+    const float floor = floor_mm();
+    return {std::max(floor, lower.kept(i)), std::max(floor, lower.kept(i + 1)),
+            std::max(floor, upper.kept(i)), std::max(floor, upper.kept(i + 1))};
+  }
 
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
@@ -121,6 +145,7 @@ class HeightGrid {
  private:
   Box bounds_mm_;
   int nx_, ny_, tiles_x_;
+  double cell_x_mm_, cell_y_mm_;
   std::vector<const float*> tiles_;
   std::shared_ptr<const void> keeper_;
 };

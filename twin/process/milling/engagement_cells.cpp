@@ -56,50 +56,141 @@ void EngagementScan::weigh_cells(double cell_mm) {
   }
 }
 
+/// Where cells are that have material over the cutter's surface: directions, for all of them first,
+/// as nothing in that depends on what the others have.
+void EngagementScan::place_cells(const Station& station, const CellFront& front,
+                                 CellBatch& cells) const {
+  const double least = 0.25 * front.across * cell_;
+  for (int n = 0; n < cells.count; ++n) {
+    const double x = cells.x[n], y = cells.y[n];
+    cells.radius[n] = std::max(cells.radius[n], least);
+    cells.ahead[n] = x * station.ahead.x + y * station.ahead.y;
+    cells.beside[n] = station.ahead.x * y - station.ahead.y * x;
+  }
+  for (int n = 0; n < cells.count; ++n) {
+    cells.step[n] =
+        (direction_of(cells.beside[n], cells.ahead[n]) + kPi / 2) * (1 / CellFront::kStep);
+    cells.under[n] = lift_of(std::abs(cells.beside[n]));
+  }
+}
+
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
-void EngagementScan::take_cell(const Station& station, const CellOver& over,
-                               CellFront& front) const {
-  const Vec2& arm = over.arm;
-  const double r = std::max(over.radius_mm, 0.25 * front.across * cell_);
-  const double ahead = glm::dot(arm, station.ahead);
-  const double beside = station.ahead.x * arm.y - station.ahead.y * arm.x;
+void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) const {
+  const double r = cells.radius[n], depth_mm = cells.depth[n], step = cells.step[n];
   const CellWeight& weight = weights_[static_cast<std::size_t>(r * lift_scale_)];
-  const double share = std::min(1.0, weight.thick_per_mm * over.depth_mm) * weight.height_rad;
-  const double step = (direction_of(beside, ahead) + kPi / 2) * (1 / CellFront::kStep);
+  const double share = std::min(1.0, weight.thick_per_mm * depth_mm) * weight.height_rad;
   if (weight.steps <= 1) {
     front.add(step, share);
   } else {
     // Near the middle a cell is seen in many directions.
     const int parts = std::min(static_cast<int>(weight.steps) + 1, kMostSpread);
-    for (int n = 0; n < parts; ++n)
-      front.add(step + weight.steps * ((n + 0.5) / parts - 0.5), share / parts);
+    for (int part = 0; part < parts; ++part)
+      front.add(step + weight.steps * ((part + 0.5) / parts - 0.5), share / parts);
   }
-  if (ahead < 0) return;
+  if (cells.ahead[n] < 0) return;
+  const Vec2 arm(cells.x[n], cells.y[n]);
+  const double beside = cells.beside[n];
   FrontContact& contact = front.at[static_cast<std::size_t>(step + 0.5)];
   contact.inner_mm = contact.radius_mm <= 0 ? r : std::min(contact.inner_mm, r);
   contact.radius_mm = std::max(contact.radius_mm, r);
   // At the blank's edge heights are taken no further than they go.
-  const double above_tip = std::min(over.depth_mm + over.lift_mm, front.most_above_tip_mm);
-  contact.deep_mm = std::max(contact.deep_mm, above_tip - lift_of(std::abs(beside)));
+  const double above_tip = std::min(depth_mm + cells.lift[n], front.most_above_tip_mm);
+  contact.deep_mm = std::max(contact.deep_mm, above_tip - cells.under[n]);
   if (contact.deep_mm > front.deep_mm) front.deep_mm = contact.deep_mm, front.deepest = arm;
   if (r > front.farthest_mm) front.farthest_mm = r, front.farthest = arm;
   if (beside > front.left_mm) front.left_mm = beside, front.leftmost = arm;
   if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
 }
 
+/// Leaves those cells that are over the surface, in the way and on no slope that it has cut.
+void EngagementScan::keep_over(const Station& station, const CellRow& row, CellBatch& cells) const {
+  for (int n = 0; n < cells.count; ++n) {
+    const double x = cells.x[n], y = cells.y[n];
+    cells.radius[n] = std::sqrt(x * x + y * y);
+  }
+  for (int n = 0; n < cells.count; ++n) {
+    cells.lift[n] = lift_of(cells.radius[n]);
+    cells.depth[n] = row.tip + cells.lift[n] + kThinnestFilm_mm;
+  }
+  int kept = 0;
+  for (int n = 0; n < cells.count; ++n) {
+    const Vec2 arm(cells.x[n], cells.y[n]);
+    const double radius = cells.radius[n];
+    if (cells.height[n] <= cells.depth[n]) continue;
+    if (station.is_near_end && !is_on_way(station, station.center + arm)) continue;
+    if (row.slope > 0 && slope_of(radius) * glm::dot(arm, station.ahead) <= row.slope * radius)
+      continue;
+    cells.move(n, kept++);
+  }
+  cells.count = kept;
+}
+
+/// All that has been collected, in its order.
+void EngagementScan::take_batch(const Station& station, const CellRow& row, CellBatch& cells,
+                                CellFront& front) const {
+  keep_over(station, row, cells);
+  int kept = 0;
+  for (int n = 0; n < cells.count; ++n) {
+    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
+    cells.height[n] = behind_held(middle, cells.height[n]);
+    if (own_until_ > 0) cells.height[n] = behind_itself(middle, cells.height[n]);
+  }
+  for (int n = 0; n < cells.count; ++n) {
+    cells.depth[n] = cells.height[n] - cells.depth[n];
+    if (cells.depth[n] > 0) cells.move(n, kept++);
+  }
+  cells.count = kept;
+  place_cells(station, front, cells);
+  for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
+  cells.count = 0;
+}
+
+/// Cells of a row that are higher than what the cutter leaves anywhere near them. Of eight side by
+/// side not one is looked at where the highest of them is below the profile at the nearest.
+void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells) const {
+  const HeightGrid::Row heights(*heights_, row.j);
+  constexpr int kOnce = HeightGrid::Row::kOfHighest;
+  const double y2 = row.y * row.y;
+  const auto collect = [&](int i) {
+    const double x = row.x_of(i), height = static_cast<double>(heights.kept(i));
+    const auto k = static_cast<std::size_t>((x * x + y2) * row.to_part);
+    // No higher than the profile somewhat farther in.
+    cells.x[cells.count] = x, cells.y[cells.count] = row.y, cells.height[cells.count] = height;
+    cells.count += height > row.tip + low_lift_[k] ? 1 : 0;
+  };
+  const bool is_plain = each == 1 && row.last + kOnce < heights_->nx();
+  for (int i = row.first; i <= row.last;) {
+    const int end = std::min(is_plain ? i - i % kOnce + kOnce - 1 : row.last, row.last);
+    if (is_plain) {
+      const double nearest = std::max({row.x_of(i), -row.x_of(end), 0.0});
+      const double least =
+          row.tip + least_lift_[static_cast<std::size_t>((nearest * nearest + y2) * row.to_part)];
+      if (static_cast<double>(heights.highest_from(i - i % kOnce)) <= least) {
+        i = end + 1;
+        continue;
+      }
+    }
+    for (; i <= end; i += each) collect(i);
+  }
+}
+
 /// All cells before it, row by row.
 void EngagementScan::take_cells(const Station& station, CellFront& front) const {
   const Box& box = heights_->bounds_mm();
   const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
-  const double tip = std::max(station.tip_z, box.min.z), slope = rise_ > 0 ? rise_ / length_ : 0;
   const double reach = engaged_ < radius_ ? engaged_ : radius_;
   const Vec2 center = station.center - Vec2(box.min), ahead = station.ahead;
-  const double to_part = kLifts / (radius_ * radius_);
-  const auto row = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
-  const int last_j = std::min(row(center.y + reach), heights_->ny() - 1);
+  CellRow row;
+  row.tip = std::max(station.tip_z, box.min.z);
+  row.slope = rise_ > 0 ? rise_ / length_ : 0;
+  row.to_part = kLifts / (radius_ * radius_);
+  row.cell_x = cell_x, row.center_x = center.x;
+  CellBatch cells;
+  const auto row_at = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
+  const int last_j = std::min(row_at(center.y + reach), heights_->ny() - 1);
   const int each = front.each, rows = front.rows;
-  for (int j = std::max(0, row(center.y - reach)); j <= last_j; j += rows) {
+  for (int j = std::max(0, row_at(center.y - reach)); j <= last_j; j += rows) {
     const double y = (j + 0.5) * cell_y - center.y;
     const double half2 = reach * reach - y * y;
     if (half2 <= 0) continue;
@@ -109,29 +200,16 @@ void EngagementScan::take_cells(const Station& station, CellFront& front) const 
     if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
     if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
     if (std::abs(ahead.x) <= 1e-9 && limit > 0) continue;
-    int first_i = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
-    first_i += (each - first_i % each + j / rows % each) % each;
-    const int last_i =
+    row.first = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
+    if (each > 1) row.first += (each - row.first % each + j / rows % each) % each;
+    row.last =
         std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
-    const HeightGrid::Row heights(*heights_, j);
-    for (int i = first_i; i <= last_i; i += each) {
-      const auto height = static_cast<double>(heights.kept(i));
-      const double x = (i + 0.5) * cell_x - center.x, r2 = x * x + y * y;
-      // No higher than the profile somewhat farther in.
-      if (height <= tip + low_lift_[static_cast<std::size_t>(r2 * to_part)]) continue;
-      CellOver over{{x, y}, std::sqrt(r2)};
-      over.lift_mm = lift_of(over.radius_mm);
-      const double surface = tip + over.lift_mm + kThinnestFilm_mm;
-      const Vec2 middle = station.center + over.arm;
-      if (height <= surface) continue;
-      if (station.is_near_end && !is_on_way(station, middle)) continue;
-      if (slope > 0 &&
-          slope_of(over.radius_mm) * glm::dot(over.arm, ahead) <= slope * over.radius_mm)
-        continue;
-      over.depth_mm = behind_itself(middle, behind_held(middle, height)) - surface;
-      if (over.depth_mm > 0) take_cell(station, over, front);
-    }
+    row.j = j, row.y = y;
+    const int most = std::max(0, row.last - row.first) / each + 2;
+    if (cells.count + most > CellBatch::kMost) take_batch(station, row, cells, front);
+    collect_row(row, each, cells);
   }
+  take_batch(station, row, cells, front);
 }
 
 /// How far beyond a place in material it ends, in that direction.

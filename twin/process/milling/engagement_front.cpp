@@ -1,5 +1,6 @@
 // EngagementScan at one place of the way: what the cutter's side has in it there.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -29,6 +30,19 @@ constexpr double kAheadCells = 0.1;
 constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
+
+/// sin(pi / 2 * k / count) of 0 .. count.
+template <int count>
+const double* quarter_sines() {
+  static const std::array<double, count + 1> sines = [] {
+    std::array<double, count + 1> made{};
+    for (int k = 0; k <= count; ++k)
+      made[static_cast<std::size_t>(k)] = std::sin(kPi / 2 * k / count);
+    return made;
+  }();
+  return sines.data();
+}
+
 /// Places across the disc of one that goes straight down, each way.
 constexpr int kDiscPlaces = 24;
 
@@ -105,8 +119,7 @@ Vec2 EngagementScan::before_rim(const Station& station, double angle) const {
 }
 
 /// How high the material is there when what the arc itself has cut at its beginning is gone, too.
-double EngagementScan::behind_itself(const Vec2& point, double height) const {
-  if (own_until_ <= 0) return height;
+double EngagementScan::behind_own(const Vec2& point, double height) const {
   const Place place = place_of(point);
   const auto left_by = [&](double angle) {
     const double r = arc_radius_, p = place.beside;
@@ -215,51 +228,61 @@ double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
   return behind_itself(point, behind_held(point, height));
 }
 
-double EngagementScan::lift_at(const Vec2& point, const Station& station) const {
-  return lift_of(glm::length(point - station.center));
-}
-
 /// Material over the cutter's surface, which between four cells is what it is at these: what this
 /// cutter has cut itself has nothing, however coarse they are. At walls and edges the moves that
 /// made them are asked, or (where nobody knows them) the nearest cell counts.
 double EngagementScan::over_surface(const Station& station, const Vec2& point) const {
-  const Box& box = heights_->bounds_mm();
-  const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
+  const HeightGrid& grid = *heights_;
+  const Box& box = grid.bounds_mm();
+  const double cell_x = grid.cell_x_mm(), cell_y = grid.cell_y_mm();
   const double x = (point.x - box.min.x) / cell_x, y = (point.y - box.min.y) / cell_y;
-  if (x < 0 || y < 0 || x >= heights_->nx() || y >= heights_->ny()) return -kNeverEnds;
-  if (!is_on_way(station, point)) return -kNeverEnds;
+  if (!(x >= 0 && y >= 0 && x < grid.nx() && y < grid.ny())) return -kNeverEnds;
+  if (station.is_near_end && !is_on_way(station, point)) return -kNeverEnds;
   const double tip = std::max(station.tip_z, box.min.z);
-  const auto over = [&](int i, int j, double& height) {
-    const Vec2 middle(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
-    height = static_cast<double>(heights_->height(i, j));
-    if (own_until_ > 0) height = behind_itself(middle, height);
-    return height - tip - lift_at(middle, station);
+  const auto middle_of = [&](int i, int j) {
+    return Vec2(box.min.x + (i + 0.5) * cell_x, box.min.y + (j + 0.5) * cell_y);
   };
-  const auto i = static_cast<int>(std::floor(x - 0.5)), j = static_cast<int>(std::floor(y - 0.5));
-  double height = 0;
+  const auto own_height = [&](int i, int j, float height) {
+    const auto high = static_cast<double>(height);
+    return own_until_ > 0 ? behind_itself(middle_of(i, j), high) : high;
+  };
   // What is held back is asked about once, and only where there would be material without it.
   const auto less_held = [&](double depth) {
     if (depth <= kThinnestFilm_mm || held_.length <= 0) return depth;
     const double surface = tip + lift_at(point, station);
     return behind_held(point, depth + surface) - surface;
   };
-  if (i < 0 || j < 0 || i + 1 >= heights_->nx() || j + 1 >= heights_->ny())
-    return less_held(over(static_cast<int>(x), static_cast<int>(y), height));
-  double depth[4], highest = -kNeverEnds, lowest = kNeverEnds;
-  for (int n = 0; n < 4; ++n) {
-    depth[n] = over(i + n % 2, j + n / 2, height);
-    highest = std::max(highest, height), lowest = std::min(lowest, height);
+  const double from_x = x - 0.5, from_y = y - 0.5;
+  const int i = static_cast<int>(from_x), j = static_cast<int>(from_y);
+  if (from_x < 0 || from_y < 0 || i + 1 >= grid.nx() || j + 1 >= grid.ny()) {
+    const int own_i = static_cast<int>(x), own_j = static_cast<int>(y);
+    const double height = own_height(own_i, own_j, grid.height(own_i, own_j));
+    return less_held(height - tip - lift_at(middle_of(own_i, own_j), station));
   }
+  const std::array<float, 4> kept = grid.heights_of_four(i, j);
+  double height[4];
+  for (int n = 0; n < 4; ++n) height[n] = own_height(i + n % 2, j + n / 2, kept[n]);
+  const double highest = std::max(std::max(height[0], height[1]), std::max(height[2], height[3]));
+  const double lowest = std::min(std::min(height[0], height[1]), std::min(height[2], height[3]));
   // Over what is level the cutter's own curve counts.
   if (highest - lowest < kThinnestFilm_mm)
     return less_held(highest - tip - lift_at(point, station));
   const double right = x - 0.5 - i, up = y - 0.5 - j;
   const bool is_wall = highest - lowest > kWallCells * cell_;
-  const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
-  if (owners_ != nullptr && (is_wall || twist > kTwistCells * cell_)) {
+  const Vec2 low = middle_of(i, j) - station.center,
+             high = middle_of(i + 1, j + 1) - station.center;
+  const auto depth_of = [&](int n) {
+    const double arm_x = n % 2 == 0 ? low.x : high.x, arm_y = n / 2 == 0 ? low.y : high.y;
+    return height[n] - tip - lift_of(std::sqrt(arm_x * arm_x + arm_y * arm_y));
+  };
+  if (is_wall) {
+    if (owners_ == nullptr) return depth_of((right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2));
     return left_by_owners(point, i, j) - tip - lift_at(point, station);
   }
-  if (is_wall) return depth[(right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2)];
+  const double depth[] = {depth_of(0), depth_of(1), depth_of(2), depth_of(3)};
+  const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
+  if (owners_ != nullptr && twist > kTwistCells * cell_)
+    return left_by_owners(point, i, j) - tip - lift_at(point, station);
   return (1 - up) * ((1 - right) * depth[0] + right * depth[1]) +
          up * ((1 - right) * depth[2] + right * depth[3]);
 }
@@ -299,10 +322,31 @@ EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle)
   return ray;
 }
 
-/// The place of a radius of `count` ones, closer together farther out, where the profile is steep.
-double EngagementScan::radius_of(int k, int count) const {
-  const double part = std::sin(kPi / 2 * k / count);
-  return flat_radius_ + (reach_ - flat_radius_) * part;
+/// The place of a radius of so many ones, closer together farther out, where the profile is steep.
+double EngagementScan::radius_of(double quarter_sine) const {
+  return flat_radius_ + (reach_ - flat_radius_) * quarter_sine;
+}
+
+/// What is the same along all directions of a look, and of others that reach as far.
+void EngagementScan::lay_radii(int count) {
+  if (laid_reach_ == reach_ && radii_.size() == static_cast<std::size_t>(count) + 1) return;
+  laid_reach_ = reach_;
+  radii_.resize(static_cast<std::size_t>(count) + 1);
+  const double* const sines =
+      count == kRadii ? quarter_sines<kRadii>() : quarter_sines<kBriefRadii>();
+  for (int k = 0; k <= count; ++k) {
+    RayRadius& at = radii_[static_cast<std::size_t>(k)];
+    at.mm = radius_of(sines[k]) * (1 - kSameRadius);
+    at.height_mm = cutter_->height_mm(at.mm);
+    if (k > 0) at.step = step_between(radii_[static_cast<std::size_t>(k - 1)].mm, at.mm);
+  }
+}
+
+/// How much the profile rises between two radii, and how much of a depth is normal to it.
+EngagementScan::RayStep EngagementScan::step_between(double from_mm, double to_mm) const {
+  const double width = std::abs(to_mm - from_mm);
+  const double rise = std::abs(lift_of(to_mm) - lift_of(from_mm));
+  return {width, rise, width > 0 ? width / std::hypot(width, rise) : 0};
 }
 
 /// Out to where anything of what is not flat is in material: in that, radii are laid.
@@ -311,14 +355,15 @@ double EngagementScan::reach_of(const Station& station) {
   if (is_flat()) return engaged_;
   const double near_mm = kNearMaterial * radius_;
   int farthest = -1;
+  const double* const sines = quarter_sines<kFirstRadii>();
   for (int n = 0; n <= kFirstRays; ++n) {
     const Ray ray = ray_at(station, kPi * (static_cast<double>(n) / kFirstRays - 0.5) * 0.99);
     for (int k = kFirstRadii; k > farthest; --k) {
-      if (over_ray(ray, radius_of(k, kFirstRadii) * (1 - kSameRadius)) > -near_mm) farthest = k;
+      if (over_ray(ray, radius_of(sines[k]) * (1 - kSameRadius)) > -near_mm) farthest = k;
     }
   }
   const bool is_all = farthest < 0 || farthest + 1 >= kFirstRadii;
-  return is_all ? engaged_ : radius_of(farthest + 1, kFirstRadii);
+  return is_all ? engaged_ : radius_of(sines[farthest + 1]);
 }
 
 /// The mean over a stretch, on which a thickness goes evenly from one to the other, of what of it
@@ -341,7 +386,7 @@ EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, Ray
   };
   for (int n = 0; n < kRadiusSteps; ++n) {
     const double middle = between(), depth = over_ray(ray, middle);
-    (depth > 0 ? in : free) = {middle, depth};
+    (depth > 0 ? in : free) = {middle, depth, nullptr};
   }
   return {between(), in};
 }
@@ -351,16 +396,16 @@ EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, Ray
 void EngagementScan::look_along(const Ray& ray) {
   along_.clear();
   std::size_t nearest = 0;
-  for (int k = 0; k <= radii_; ++k) {
-    const double radius = radius_of(k, radii_) * (1 - kSameRadius);
-    along_.push_back({radius, over_ray(ray, radius)});
+  for (const RayRadius& at : radii_) {
+    along_.push_back({at.mm, over_ray(ray, at.mm), &at});
     if (along_.back().depth > along_[nearest].depth) nearest = along_.size() - 1;
   }
   const double depth = along_[nearest].depth;
   if (depth > 0 || depth < -kNearMaterial * radius_) return;
   for (std::size_t k = std::min(nearest + 1, along_.size() - 1); k >= nearest && k > 0; --k) {
     const double radius = 0.5 * (along_[k - 1].radius + along_[k].radius);
-    along_.insert(along_.begin() + static_cast<std::ptrdiff_t>(k), {radius, over_ray(ray, radius)});
+    along_.insert(along_.begin() + static_cast<std::ptrdiff_t>(k),
+                  {radius, over_ray(ray, radius), nullptr});
   }
 }
 
@@ -368,21 +413,22 @@ void EngagementScan::look_along(const Ray& ray) {
 void EngagementScan::round_contact(const Station& station, double angle, FrontContact& found) {
   const Ray ray = ray_at(station, angle);
   look_along(ray);
+  const double sine = std::abs(std::sin(angle));
+  const double most_above_tip = heights_->bounds_mm().max.z - station.tip_z;
   const auto take = [&](const RayPlace& from, const RayPlace& to) {
-    const double width = std::abs(to.radius - from.radius);
-    if (width <= 0) return;
-    const double rise = std::abs(lift_of(to.radius) - lift_of(from.radius));
-    const double normal = width / std::hypot(width, rise);
-    found.high_mm += rise * counted(normal * from.depth, normal * to.depth);
+    const bool is_laid = from.at != nullptr && to.at == from.at + 1;
+    const RayStep step = is_laid ? to.at->step : step_between(from.radius, to.radius);
+    if (step.width_mm <= 0) return;
+    found.high_mm += step.rise_mm * counted(step.normal * from.depth, step.normal * to.depth);
   };
   double inner = -1, outer = -1;
   for (std::size_t k = 0; k < along_.size(); ++k) {
     const RayPlace& at = along_[k];
     if (at.depth > 0) {
-      const double lowest = cutter_->height_mm(at.radius * std::abs(std::sin(angle)));
+      const double lowest = cutter_->height_mm(at.radius * sine);
+      const double surface = at.at != nullptr ? at.at->height_mm : cutter_->height_mm(at.radius);
       // At the blank's edge heights are taken further than they go.
-      const double above_tip = std::min(at.depth + cutter_->height_mm(at.radius),
-                                        heights_->bounds_mm().max.z - station.tip_z);
+      const double above_tip = std::min(at.depth + surface, most_above_tip);
       found.deep_mm = std::max(found.deep_mm, above_tip - lowest);
       if (k == 0) inner = at.radius;
       outer = at.radius;
@@ -394,7 +440,7 @@ void EngagementScan::round_contact(const Station& station, double angle, FrontCo
     } else if (at.depth > 0 || before.depth > 0) {
       const bool begins = at.depth > 0;
       const RayEdge edge = begins ? edge_on(ray, at, before) : edge_on(ray, before, at);
-      take({edge.radius, 0}, edge.in);
+      take({edge.radius, 0, nullptr}, edge.in);
       take(edge.in, begins ? at : before);
       if (begins && inner < 0) inner = edge.radius;
       if (!begins) outer = edge.radius;
@@ -467,7 +513,6 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   set_held(asked.held);
   const bool knows_walls = asked.owners != nullptr && asked.ways != nullptr;
   own_until_ = 0;
-  radii_ = asked.is_brief ? kBriefRadii : kRadii;
   owners_ = knows_walls ? asked.owners : nullptr, ways_ = asked.ways;
   engaged_ = engaged_radius();
   if (engaged_ <= 0) return {};
@@ -483,6 +528,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
     return look;
   }
   reach_ = reach_of(station);
+  if (!is_flat()) lay_radii(asked.is_brief ? kBriefRadii : kRadii);
   FrontRays rays(kRays, radius_, is_flat());
   rays.sweep([&](double angle) { return contact_at(station, angle); });
   EngagementLook look = rays.look(asked.anticlockwise);

@@ -129,9 +129,8 @@ double EngagementScan::front_at_start(const Lane& lane) const {
 }
 
 /// How high the material is there when the move that is held back is cut, too.
-double EngagementScan::behind_held(const Vec2& point, double height) const {
+double EngagementScan::behind_way(const Vec2& point, double height) const {
   const Held& held = held_;
-  if (held.length <= 0 || height <= held.z + std::min(0.0, held.slope * held.length)) return height;
   const Vec2 arm = point - held.start;
   const double beside = held.direction.x * arm.y - held.direction.y * arm.x;
   const double along = glm::dot(arm, held.direction);
@@ -367,8 +366,14 @@ void EngagementScan::set_held(const CutMove* held) {
   const double length = glm::length(Vec2(way));
   if (length <= 0) return;
   const double slope = way.z / length;
-  held_ = {Vec2(held->from_mm),         Vec2(way) / length, length, held->from_mm.z, slope,
-           slope / std::hypot(1, slope)};
+  held_ = {Vec2(held->from_mm),
+           Vec2(way) / length,
+           length,
+           held->from_mm.z,
+           slope,
+           slope / std::hypot(1, slope),
+           0};
+  held_.lowest = held_.z + std::min(0.0, slope * length);
 }
 
 EngagementScan::Cost EngagementScan::run_lanes(const HeightGrid& heights, const Cutter& cutter,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -134,7 +135,10 @@ class EngagementScan {
   bool stands_beside(const Place& place, double tip_mm) const;
   bool is_at_side(const Place& place) const;
   std::optional<double> height_at(const Vec2& point) const;
-  double behind_held(const Vec2& point, double height) const;
+  double behind_held(const Vec2& point, double height) const {
+    return height <= held_.lowest ? height : behind_way(point, height);
+  }
+  double behind_way(const Vec2& point, double height) const;
   Box path_box(double from, double to) const;
 
   struct Lane {
@@ -198,9 +202,15 @@ class EngagementScan {
                      bool at_rim) const;
   double rim_height(const Station& station, double angle) const;
   bool is_cut_there(const Vec2& point, double z, int i, int j) const;
-  double lift_at(const Vec2& point, const Station& station) const;
+  double lift_at(const Vec2& point, const Station& station) const {
+    const Vec2 arm = point - station.center;
+    return lift_of(std::sqrt(arm.x * arm.x + arm.y * arm.y));
+  }
   double over_surface(const Station& station, const Vec2& point) const;
-  double behind_itself(const Vec2& point, double height) const;
+  double behind_itself(const Vec2& point, double height) const {
+    return own_until_ <= 0 ? height : behind_own(point, height);
+  }
+  double behind_own(const Vec2& point, double height) const;
   double left_by_owners(const Vec2& point, int i, int j) const;
   double left_at_wall(const Vec2& point, int i, int j, double height) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
@@ -216,12 +226,23 @@ class EngagementScan {
   };
   Ray ray_at(const Station& station, double angle) const;
   double over_ray(const Ray& ray, double radius) const;
-  double radius_of(int k, int count) const;
+  double radius_of(double quarter_sine) const;
   double reach_of(const Station& station);
   static double counted(double from_mm, double to_mm);
+  /// From one radius to another one.
+  struct RayStep {
+    double width_mm = 0, rise_mm = 0, normal = 0;
+  };
+  struct RayRadius {
+    double mm = 0, height_mm = 0;  ///< the cutter's, over its tip
+    RayStep step;                  ///< from the one before
+  };
+  void lay_radii(int count);
+  RayStep step_between(double from_mm, double to_mm) const;
   /// How deep the cutter is in material at a radius of a direction; below 0: so far above it.
   struct RayPlace {
     double radius = 0, depth = 0;
+    const RayRadius* at = nullptr;  ///< if it is one of these
   };
   /// Where that begins or ends, and the nearest place in material that was looked at.
   struct RayEdge {
@@ -256,14 +277,37 @@ class EngagementScan {
       share[low + 1] += height_rad * beyond;
     }
   };
-  /// A cell over the cutter's surface.
-  struct CellOver {
-    Vec2 arm{0};                        ///< from the cutter's middle
-    double radius_mm = 0, lift_mm = 0;  ///< of that place, and the cutter's surface over its tip
-    double depth_mm = 0;
+  /// Cells before the cutter, seen from its middle. There are kManyCells * sqrt(2) at most to
+  /// either side of that in a row.
+  struct CellBatch {
+    static constexpr int kMost = 256;
+    using Each = std::array<double, kMost>;
+    int count = 0;
+    Each x, y, height;
+    Each radius, lift;         ///< of their places, and the cutter's surface there over its tip
+    Each depth;                ///< at first the surface, then how deep it is in material
+    Each ahead, beside, step;  ///< along and beside the way, and the direction
+    Each under;                ///< what the cutter leaves there, over its tip
+    void move(int from, int to) {
+      x[to] = x[from], y[to] = y[from], height[to] = height[from];
+      radius[to] = radius[from], lift[to] = lift[from], depth[to] = depth[from];
+    }
+  };
+  /// Cells of a row, seen from the cutter's middle.
+  struct CellRow {
+    double tip = 0, slope = 0;  ///< as high as the cutter's tip is, of its way up
+    double to_part = 0;         ///< from a radius' square to its place in low_lift_
+    double cell_x = 0, center_x = 0, y = 0;
+    int j = 0, first = 0, last = 0;
+    double x_of(int i) const { return (i + 0.5) * cell_x - center_x; }
   };
   bool is_fine() const;
-  void take_cell(const Station& station, const CellOver& over, CellFront& front) const;
+  void collect_row(const CellRow& row, int each, CellBatch& cells) const;
+  void keep_over(const Station& station, const CellRow& row, CellBatch& cells) const;
+  void place_cells(const Station& station, const CellFront& front, CellBatch& cells) const;
+  void take_cell(const CellBatch& cells, int n, CellFront& front) const;
+  void take_batch(const Station& station, const CellRow& row, CellBatch& cells,
+                  CellFront& front) const;
   void take_cells(const Station& station, CellFront& front) const;
   void weigh_cells(double cell_mm);
   double beyond(const Station& station, const Vec2& arm, const Vec2& out, double cells) const;
@@ -286,7 +330,8 @@ class EngagementScan {
   const HeightGrid* heights_ = nullptr;
   const Cutter* cutter_ = nullptr;  ///< of a look
   std::vector<RayPlace> along_;     ///< one direction of it
-  int radii_ = 0;                   ///< along it
+  std::vector<RayRadius> radii_;    ///< along it
+  double laid_reach_ = -1;          ///< for which they are
   Motion motion_;                   ///< of arcs
   bool arc_ = false;
   bool is_ball_ = false;
@@ -309,9 +354,10 @@ class EngagementScan {
     double height_rad = 0, thick_per_mm = 1, steps = 1;
   };
   std::vector<CellWeight> weights_;
-  double weighed_mm_ = 0;         ///< for cells of that size
-  std::vector<double> low_lift_;  ///< no more than that, over even steps of the radius' square
-  std::vector<double> profile_;   ///< its length from where it begins to rise, over the radius
+  double weighed_mm_ = 0;           ///< for cells of that size
+  std::vector<double> low_lift_;    ///< no more than that, over even steps of the radius' square
+  std::vector<double> least_lift_;  ///< .. and no more than that from there on out
+  std::vector<double> profile_;     ///< its length from where it begins to rise, over the radius
 
   double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;
   Cost cost_;
@@ -327,6 +373,7 @@ class EngagementScan {
     Vec2 start{0}, direction{1, 0};
     double length = 0, z = 0;
     double slope = 0, lean = 0;  ///< of its way: the tangent, and the sine
+    double lowest = std::numeric_limits<double>::infinity();  ///< it leaves what is no higher
   } held_;
 };
 
