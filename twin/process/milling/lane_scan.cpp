@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
+#include <utility>
 
 namespace kerf {
 namespace {
 
 /// Halvings of where the cutter begins on a lane, and narrowings of where it is deepest.
-constexpr int kLaneHalvings = 14, kLaneNarrowings = 24;
+constexpr int kLaneHalvings = 14, kLaneNarrowings = 26;
+constexpr double kGolden = 0.6180339887498949;
 /// Halvings of where material begins between two lanes.
 constexpr int kSideHalvings = 5;
 /// Lanes above each other are closer together near the tip: so many cells.
@@ -23,11 +26,32 @@ constexpr double kRim = 2e-5;
 constexpr double kSame = 1e-9;
 /// A spindle this near to the way: it goes straight down or up.
 constexpr double kPlunge = 1e-6;
+/// Profiles are of a form to within this, mm.
+constexpr double kSameForm_mm = 1e-9;
+
+bool is_ball(const Cutter& cutter) {
+  const std::span<const ProfilePiece> pieces = cutter.profile();
+  if (cutter.undercuts() || pieces.size() != 1) return false;
+  const ProfilePiece& p = pieces[0];
+  const double radius = cutter.radius_mm();
+  return p.kind == ProfilePiece::Kind::kArc && p.convex && p.r0 == 0 &&
+         std::abs(p.center_r) < kSameForm_mm && std::abs(p.center_z - radius) < kSameForm_mm &&
+         std::abs(p.radius - radius) < kSameForm_mm && std::abs(p.r1 - radius) < kSameForm_mm;
+}
+
+bool is_flat(const Cutter& cutter) {
+  const std::span<const ProfilePiece> pieces = cutter.profile();
+  if (cutter.undercuts() || pieces.empty()) return false;
+  const ProfilePiece& p = pieces[0];
+  return p.kind == ProfilePiece::Kind::kLine && p.r0 == 0 && p.z0 == 0 && p.z1 == 0 &&
+         p.r1 == cutter.radius_mm();
+}
 
 }  // namespace
 
 bool LaneScan::set(const Box& box, const Cutter& cutter, const CutMove& move) {
   cutter_ = &cutter;
+  form_ = is_ball(cutter) ? Form::kBall : is_flat(cutter) ? Form::kFlat : Form::kAny;
   box_ = box;
   start_ = move.from_mm;
   radius_ = cutter.radius_mm();
@@ -63,6 +87,30 @@ bool LaneScan::inside(double x, double y, double along) const {
          distance <= *cutter_->neck_radius_mm();
 }
 
+/// Of a cylinder about the spindle what is above the tip, or above a ball's centre, and that ball.
+/// `half`: of the cylinder's chord.
+bool LaneScan::reach_closed(double x, double y, double half, double& back, double& front) const {
+  const double above = form_ == Form::kBall ? radius_ : 0;
+  back = far_, front = -far_;
+  double low = (y * lean_ - half) / rise_, high = (y * lean_ + half) / rise_;
+  if (low > high) std::swap(low, high);
+  if (std::abs(lean_) < kSame) {
+    if (y * rise_ < above) high = low - 1;
+  } else {
+    const double end = (above - y * rise_) / lean_;
+    lean_ > 0 ? low = std::max(low, end) : high = std::min(high, end);
+  }
+  if (low <= high) back = low, front = high;
+  if (form_ == Form::kBall) {
+    const double up = y - radius_ * rise_, half2 = radius_ * radius_ - x * x - up * up;
+    if (half2 >= 0) {
+      const double middle = radius_ * lean_, chord = std::sqrt(half2);
+      back = std::min(back, middle - chord), front = std::max(front, middle + chord);
+    }
+  }
+  return back <= front;
+}
+
 /// What of a lane the cutter fills, from its first place to its last.
 bool LaneScan::reach(double x, double y, double& back, double& front) const {
   const double half2 = radius_ * radius_ - x * x;
@@ -70,6 +118,7 @@ bool LaneScan::reach(double x, double y, double& back, double& front) const {
   double low = -far_, high = far_;
   if (std::abs(rise_) > kPlunge) {  // |y * lean - along * rise| <= half
     const double half = std::sqrt(half2), middle = y * lean_ / rise_;
+    if (form_ != Form::kAny) return reach_closed(x, y, half, back, front);
     low = std::max(low, middle - half / std::abs(rise_));
     high = std::min(high, middle + half / std::abs(rise_));
   } else if (std::abs(y) >= std::sqrt(half2)) {
@@ -101,12 +150,16 @@ double LaneScan::deepest(double x, double y, double low, double high) const {
     return cutter_->height_mm(std::min(std::sqrt(x * x + across * across), radius_)) -
            along * lean_;
   };
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double at_a = above(a), at_b = above(b);
   for (int i = 0; i < kLaneNarrowings; ++i) {
-    const double a = low + 0.4 * (high - low), b = low + 0.6 * (high - low);
-    if (above(a) <= above(b))
-      high = b;
-    else
-      low = a;
+    if (at_a <= at_b) {
+      high = b, b = a, at_b = at_a;
+      a = high - kGolden * (high - low), at_a = above(a);
+    } else {
+      low = a, a = b, at_a = at_b;
+      b = low + kGolden * (high - low), at_b = above(b);
+    }
   }
   return 0.5 * (low + high);
 }

@@ -53,7 +53,11 @@ class LaneScan {
     double front_low = 0, front_high = 0;
   };
 
+  /// Cutters whose lanes have closed forms.
+  enum class Form { kAny, kBall, kFlat };
+
   bool set(const Box& box, const Cutter& cutter, const CutMove& move);
+  bool reach_closed(double x, double y, double half, double& back, double& front) const;
   bool inside(double x, double y, double along) const;
   bool reach(double x, double y, double& back, double& front) const;
   double deepest(double x, double y, double low, double high) const;
@@ -68,6 +72,7 @@ class LaneScan {
 
   const SolidPoints* solid_ = nullptr;
   const Cutter* cutter_ = nullptr;
+  Form form_ = Form::kAny;
   Box box_;
   Vec3 start_{0}, along_{1, 0, 0}, beside_{0, 1, 0}, above_{0, 0, 1};
   double length_ = 0, radius_ = 0;

@@ -121,6 +121,19 @@ TEST_F(LaneScanTest, APlungeCutsFromTheTopOn) {
 /// A flat cutter that leans by 30 degrees across its way, its edge 2 mm deep: on the top of the
 /// block its end is 4 mm from the deepest point, 1 mm from its middle: it meets the side sqrt(25 -
 /// 1) mm before that.
+/// By 30 degrees forward: the ball's centre is 2.5 mm before its tip and 2.33 above the top, so the
+/// ball reaches the top 4.42 mm before that, the wall above it 4.43, and nothing is left 47.5 mm
+/// on.
+TEST_F(LaneScanTest, ALeaningBallIsMetWhereItsSideIs) {
+  const Vec3 axis(0.5, 0, std::sqrt(0.75));
+  run(parse_shape("ball:10").value(), line({-20, 15, -2}, {70, 15, -2}, axis));
+  ASSERT_EQ(scan_.spans().size(), 1U);
+  expect_span(0, 20 - 6.93, 67.5, 0.1);
+  const double high = 5 * std::sqrt(0.75) - 2, half = std::sqrt(25 - high * high);
+  const double section_mm2 = 25 * std::acos(high / 5) - high * half;
+  EXPECT_NEAR(rate(40, 60), section_mm2, 0.04 * section_mm2);
+}
+
 TEST_F(LaneScanTest, ALeaningCutterIsMetWhereItsEdgeIs) {
   const double lean = kPi / 6, deep_mm = 2;
   const Vec3 axis(0, -std::sin(lean), std::cos(lean));
