@@ -27,12 +27,13 @@ constexpr const char* kListingHead =
 /// Processor time after which a run is where it takes long.
 constexpr double kCutting_s = 1.0;
 
-KerfCall interrupted_run(const TestFolder& folder, const std::string& program) {
+KerfCall interrupted_run(const TestFolder& folder, const std::string& program,
+                         const std::string& cell_mm = "0.1") {
   KerfCall call;
   call.arguments = {"run",     program,
                     "--stock", "box:-5,-5,-5:25,15,0",
                     "--tool",  "1=flat:6",
-                    "--cell",  "0.1",
+                    "--cell",  cell_mm,
                     "--json",  folder.file("out/part.json"),
                     "--stl",   folder.file("out/part.stl")};
   mkdir(folder.file("out").c_str(), 0700);
@@ -96,11 +97,7 @@ TEST(Interrupt, WithinALongMotion) {
                                            "    6 N4     STRAIGHT_FEED(0, 0, -1, 0, 0, 0)\n"
                                            "    7 N5     STRAIGHT_FEED(20, 5, -1, 0, 3600000, 0)\n"
                                            "    8 N6     PROGRAM_END()\n");
-  KerfCall call = interrupted_run(folder, program);
-  call.arguments.insert(call.arguments.end(), {"--cell", "0.5"});
-  call.arguments.erase(std::find(call.arguments.begin(), call.arguments.end(), "--cell"),
-                       std::find(call.arguments.begin(), call.arguments.end(), "--cell") + 2);
-  RunningKerf kerf(call);
+  RunningKerf kerf(interrupted_run(folder, program, "0.2"));
   ASSERT_TRUE(kerf.wait_until([&] { return kerf.cpu_s() > kCutting_s; }));
   const auto sent = std::chrono::steady_clock::now();
   kerf.send(SIGTERM);
