@@ -123,21 +123,20 @@ inline void bound_blocks(const BrickWork& work, const Sweep& sweep, const Points
   store_lanes(high, most);
 }
 
+/// Along an axis, of block b by its bit for that.
+inline Doubles middles_of_blocks(const BrickWork& work, int axis) {
+  constexpr double kIsUpper[3][8] = {
+      {0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+  const double* const place = work.place_mm[axis];
+  const auto middle = [&](int low) { return all(0.5 * (place[low] + place[low + kNodeBlock])); };
+  return choose(all(0.0) < load_lanes<Doubles>(kIsUpper[axis]), middle(kNodeBlock), middle(0));
+}
+
 /// Which of the 2 x 2 x 2 blocks F decides at once, as it cannot change faster than by 1 mm a mm.
 /// False: none of them is reached.
 inline bool sort_blocks(BrickWork& work, const Sweep& sweep) {
-  double* const x = work.x;  // points of no others yet
-  double* const y = work.y;
-  double* const z = work.z;
-  for (int b = 0; b < 8; ++b) {
-    const auto middle = [&](int axis, int low) {
-      return 0.5 * (work.place_mm[axis][low] + work.place_mm[axis][low + kNodeBlock]);
-    };
-    x[b] = middle(0, (b & 1) * kNodeBlock);
-    y[b] = middle(1, (b >> 1 & 1) * kNodeBlock);
-    z[b] = middle(2, (b >> 2) * kNodeBlock);
-  }
-  const Points p = load_points(x, y, z, 0);
+  const Points p{middles_of_blocks(work, 0), middles_of_blocks(work, 1),
+                 middles_of_blocks(work, 2)};
   const double clear = work.block_clear_mm;
   Gradients g;
   if (sweep.kind == Sweep::Kind::kTurn) {
@@ -545,9 +544,10 @@ inline void take_columns(BrickWork& work, OpenBrick& brick) {
   work.removed = 0;
   std::int64_t cleared = 0;
   for (int j = 0; j < kBrick; ++j) {
+    constexpr std::size_t kRowBytes = kBrick * sizeof(std::uint16_t);
+    if (std::memcmp(brick.columns + j * kSide, work.columns + j * kSide, kRowBytes) == 0) continue;
     for (int i = 0; i < kBrick; ++i) {
       const unsigned before = brick.columns[j * kSide + i], after = work.columns[j * kSide + i];
-      if (before == after) continue;
       cleared += __builtin_popcount((before ^ after) & 0xffu);
       work.heights[j * kBrick + i] = (__builtin_popcount(before & before >> 1 & 0xffu) -
                                       __builtin_popcount(after & after >> 1 & 0xffu)) *

@@ -65,6 +65,8 @@ struct BrickWork {
   double plane_at[8], plane_x[8], plane_y[8], plane_z[8];
   /// Of balls: F in a block is nowhere more than its plane and this. kUnbounded: who knows.
   double bend_mm[8];
+  /// The same planes as columns of nodes see them, in floats (node_list.h), [what][block].
+  alignas(32) float column_planes[7][8];
   double node_f[kNodeNumbers];  ///< F at solid nodes of mixed blocks, or a bound below it
   /// Edges by their bytes, [axis][j][i]: crossed before and after, only after, only before.
   std::uint8_t kept[kEdges / 8], fresh[kEdges / 8], lost[kEdges / 8];

@@ -234,8 +234,13 @@ KERF_LANES void widen(const std::uint16_t* from, Pair<V>& to) {
 /// The first four lanes are `left`, the others `right`.
 template <class V, class T>
 KERF_LANES V four_each(T left, T right) {
-  const T lanes[8] = {left, left, left, left, right, right, right, right};
-  return load_lanes<V>(lanes);
+  if constexpr (sizeof(T) == sizeof(std::int32_t)) {
+    constexpr std::int32_t kLeft[8] = {-1, -1, -1, -1, 0, 0, 0, 0};
+    return choose(load_lanes<Ints>(kLeft), all<V>(left), all<V>(right));
+  } else {
+    const T lanes[8] = {left, left, left, left, right, right, right, right};
+    return load_lanes<V>(lanes);
+  }
 }
 
 /// Eight doubles cut down to whole numbers.

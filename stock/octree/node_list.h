@@ -25,6 +25,34 @@ KERF_LANES Floats power_of_two(const Floats& n) {
   return power;
 }
 
+/// Sets work.column_planes from the planes of the blocks: at the brick's first node; by a cell
+/// along X and Y; -1 over what they rise by along Z; sign and offset of bits
+/// (ColumnPlanes::nodes()); what F may be more than they are.
+inline void set_column_planes(BrickWork& work) {
+  const auto get = [](const double* values) { return load_lanes<Doubles>(values); };
+  const Doubles x = get(work.plane_x), y = get(work.plane_y), z = get(work.plane_z);
+  const double slack = kBlockSlack_mm + kFloatSlack * work.half_diagonal_mm;
+  const Doubles step = z * all(work.cell_mm[2]), zero = all(0.0);
+  const Masks rises = zero <= step;
+  // So little over a brick is far below the slack.
+  const Doubles least = choose(rises, greater(step, all(1e-9)), lesser(step, all(-1e-9)));
+  int next = 0;
+  const auto put = [&](const Doubles& values) {
+    Floats narrow;
+    narrow_to(values, narrow);
+    store_lanes(narrow, work.column_planes[next++]);
+  };
+  put(get(work.plane_at) + x * all(work.place_mm[0][0]) + y * all(work.place_mm[1][0]) +
+      z * all(work.place_mm[2][0]) - all(slack));
+  put(x * all(work.cell_mm[0]));
+  put(y * all(work.cell_mm[1]));
+  put(all(-1.0) / least);
+  // Rising: nodes up to where the plane is at 0; else all but those.
+  put(choose(rises, all(1.0), all(-1.0)));
+  put(choose(rises, all(-1.0), all(double{1 << kSide})));
+  put(get(work.bend_mm) + all(2 * slack));
+}
+
 /// Tangent planes of two blocks, for four columns each.
 struct ColumnPlanes {
   Floats at, x, y;  ///< of the brick's first node, and by a cell along X or Y
@@ -32,23 +60,9 @@ struct ColumnPlanes {
   Floats per_step, sign, offset;
 
   ColumnPlanes(const BrickWork& work, int left, int right) {
-    float lanes[7][2];
-    const double slack = kBlockSlack_mm + kFloatSlack * work.half_diagonal_mm;
-    for (const bool is_right : {false, true}) {
-      const int b = is_right ? right : left;
-      const double step = work.plane_z[b] * work.cell_mm[2];
-      const bool rises = step >= 0;
-      // So little over a brick is far below the slack.
-      const double least = rises ? (step < 1e-9 ? 1e-9 : step) : (step > -1e-9 ? -1e-9 : step);
-      const double values[7] = {
-          work.plane_at[b] + work.plane_x[b] * work.place_mm[0][0] +
-              work.plane_y[b] * work.place_mm[1][0] + work.plane_z[b] * work.place_mm[2][0] - slack,
-          work.plane_x[b] * work.cell_mm[0], work.plane_y[b] * work.cell_mm[1], -1 / least,
-          // Rising: nodes up to where the plane is at 0; else all but those.
-          rises ? 1.0 : -1.0, rises ? -1.0 : double{1 << kSide}, work.bend_mm[b] + 2 * slack};
-      for (int n = 0; n < 7; ++n) lanes[n][is_right ? 1 : 0] = static_cast<float>(values[n]);
-    }
-    const auto get = [&](int n) { return four_each<Floats>(lanes[n][0], lanes[n][1]); };
+    const auto get = [&](int n) {
+      return four_each<Floats>(work.column_planes[n][left], work.column_planes[n][right]);
+    };
     at = get(0), x = get(1), y = get(2), per_step = get(3), sign = get(4), offset = get(5);
     bend = get(6);
   }
@@ -133,8 +147,11 @@ struct NodeList {
     }
     if (!any_bits(bits)) return;
     store_lanes(bits, lanes);
+    // Rows of nodes go along X, the columns beyond them along Y.
+    const int first = stride == 1 ? number / kSide << 8 : kBrick << 4;
+    const int step = stride == 1 ? 1 << 4 : 1 << 8;
     for (int l = 0; l < 8; ++l)
-      if (lanes[l] != 0) list(number + l * stride, static_cast<unsigned>(lanes[l]));
+      if (lanes[l] != 0) list(first + l * step, static_cast<unsigned>(lanes[l]));
   }
   /// A column by itself, in one block and that above it.
   void add_last(const OpenBrick& brick, int column, int block) {
@@ -155,10 +172,10 @@ struct NodeList {
                            work.plane_z[b] * work.place_mm[2][k];
       if (!planar || plane < kBlockSlack_mm) bits |= node;
     }
-    list(column, bits);
+    list(column / kSide << 8 | column % kSide << 4, bits);
   }
-  void list(int column, unsigned bits) {
-    const int node = column / kSide << 8 | column % kSide << 4;
+  /// Of the column whose first node that is.
+  void list(int node, unsigned bits) {
     for (; bits != 0; bits &= bits - 1)
       work.nodes[points++] = static_cast<std::uint16_t>(node | __builtin_ctz(bits));
   }
@@ -167,6 +184,7 @@ struct NodeList {
 /// Solid nodes whose F has to be found are listed in work.nodes, those of blocks that lie inside
 /// are cleared. `planar`: planes are known. Returns how many are listed.
 inline int list_nodes(BrickWork& work, bool planar, const OpenBrick& brick, bool& cleared) {
+  set_column_planes(work);
   NodeList list{work, planar};
   const float steps[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Floats step = load_lanes<Floats>(steps);
