@@ -27,16 +27,19 @@ inline void fix_spindle(Sweep& fixed) {
   fixed.kind = shape == ToolBody::Shape::kBall ? Sweep::Kind::kBall : Sweep::Kind::kRamp;
 }
 
+/// From a place to the middle of the brick, along an axis.
+inline double to_middle(const BrickWork& work, int axis, double place_mm) {
+  return 0.5 * (work.place_mm[axis][0] + work.place_mm[axis][kBrick]) - place_mm;
+}
+
 /// All of the brick lies below the cylinder of a ball nose, on all of its way: the sphere alone is
 /// near.
 inline bool sees_sphere(const BrickWork& work, const Sweep& sweep) {
   if (sweep.body->shape != ToolBody::Shape::kBall) return false;
   if (sweep.kind != Sweep::Kind::kBall && sweep.kind != Sweep::Kind::kTurn) return false;
-  const auto way = [&](int axis, double origin) {
-    return 0.5 * (work.place_mm[axis][0] + work.place_mm[axis][kBrick]) - origin;
-  };
   const Vec3 &o = sweep.origin_mm, &step = sweep.step, &w = sweep.w, &turn = sweep.turn;
-  const double x = way(0, o.x), y = way(1, o.y), z = way(2, o.z);
+  const double x = to_middle(work, 0, o.x), y = to_middle(work, 1, o.y),
+               z = to_middle(work, 2, o.z);
   const double first = x * w.x + y * w.y + z * w.z;
   const double last =
       (x - step.x) * (w.x + turn.x) + (y - step.y) * (w.y + turn.y) + (z - step.z) * (w.z + turn.z);
@@ -56,14 +59,12 @@ inline const Sweep& seen_sweep(BrickWork& work, const Sweep& sweep) {
 /// By how much F of a turning piece may differ from that without the turn, in this brick: a body of
 /// revolution that turns by an angle about its tip is as if the point moved about that.
 inline double off_mean_mm(const BrickWork& work, const Sweep& turning) {
-  const auto way = [&](int axis, double origin) {
-    return 0.5 * (work.place_mm[axis][0] + work.place_mm[axis][kBrick]) - origin;
-  };
   const auto length = [](double x, double y, double z) {
     return __builtin_sqrt(x * x + y * y + z * z);
   };
   const Vec3 &origin = turning.origin_mm, &step = turning.step;
-  const double reach = length(way(0, origin.x), way(1, origin.y), way(2, origin.z)) +
+  const double reach = length(to_middle(work, 0, origin.x), to_middle(work, 1, origin.y),
+                              to_middle(work, 2, origin.z)) +
                        work.half_diagonal_mm + length(step.x, step.y, step.z);
   return turning.off_rad * reach;
 }
@@ -84,12 +85,10 @@ inline void set_bends(BrickWork& work, const Sweep& sweep, const Doubles& f, dou
     return;
   }
   const Doubles distance = f + all(sweep.body->elements[0].radius - sweep.shrink_mm);
-  const auto bend = [&](double reach) {
-    const Doubles least = distance - all(reach);
-    return choose(least < all(reach), all(kUnbounded),
-                  all(0.5 * reach * reach) / least + all(more_mm));
-  };
-  store_lanes(bend(work.block_clear_mm), work.bend_mm);
+  const double reach = work.block_clear_mm;
+  const Doubles least = distance - all(reach);
+  const Doubles bend = all(0.5 * reach * reach) / least + all(more_mm);
+  store_lanes(choose(least < all(reach), all(kUnbounded), bend), work.bend_mm);
 }
 
 KERF_LANES Masks is_near(const Doubles& f, double value, double off) {
@@ -520,6 +519,11 @@ inline void write_open(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
        (sweep.body->shape == ToolBody::Shape::kBall && sweep.kind != Sweep::Kind::kArc));
   Roots roots[kRootGroups];
   int firsts[kRootGroups], count = 0;
+  const auto search = [&] {
+    search_roots(work, sweep, count, roots);
+    for (int g = 0; g < count; ++g) write_group(work, roots[g], firsts[g], sweep.cut_id, brick);
+    count = 0;
+  };
   for (int first = 0; first < open.count; first += W) {
     Roots& r = roots[count];
     begin_roots(work, open, first, r);
@@ -528,14 +532,9 @@ inline void write_open(BrickWork& work, const Sweep& sweep, OpenBrick& brick) {
       continue;
     }
     firsts[count++] = first;
-    if (count < kRootGroups && first + W < open.count) continue;
-    search_roots(work, sweep, count, roots);
-    for (int g = 0; g < count; ++g) write_group(work, roots[g], firsts[g], sweep.cut_id, brick);
-    count = 0;
+    if (count == kRootGroups) search();
   }
-  if (count == 0) return;
-  search_roots(work, sweep, count, roots);
-  for (int g = 0; g < count; ++g) write_group(work, roots[g], firsts[g], sweep.cut_id, brick);
+  if (count > 0) search();
 }
 
 /// Takes the nodes' new state over, and measures what is gone with it.

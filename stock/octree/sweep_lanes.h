@@ -218,8 +218,7 @@ struct RampPath {
   /// Gradients along u, v, w.
   KERF_LANES void at(const Place& p, Trial& t) const {
     const Doubles du = p.u - t.s * all(sweep.length_u);
-    const Doubles r = root(du * du + p.v * p.v),
-                  z = p.w - t.s * all(sweep.length_w) + all(sweep.origin_above_mm);
+    const Doubles r = root(du * du + p.v * p.v), z = p.w - t.s * all(sweep.length_w);
     Value value;
     body_value(*sweep.body, r, z, value);
     const Doubles inverse = value.nr / greater(r, all(kTiny));
