@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <span>
 #include <utility>
+
+#include "twin/process/milling/past_ways.h"
 
 namespace kerf {
 namespace {
@@ -26,35 +27,18 @@ constexpr double kRim = 2e-5;
 constexpr double kSame = 1e-9;
 /// A spindle this near to the way: it goes straight down or up.
 constexpr double kPlunge = 1e-6;
-/// Profiles are of a form to within this, mm.
-constexpr double kSameForm_mm = 1e-9;
-
-bool is_ball(const Cutter& cutter) {
-  const std::span<const ProfilePiece> pieces = cutter.profile();
-  if (cutter.undercuts() || pieces.size() != 1) return false;
-  const ProfilePiece& p = pieces[0];
-  const double radius = cutter.radius_mm();
-  return p.kind == ProfilePiece::Kind::kArc && p.convex && p.r0 == 0 &&
-         std::abs(p.center_r) < kSameForm_mm && std::abs(p.center_z - radius) < kSameForm_mm &&
-         std::abs(p.radius - radius) < kSameForm_mm && std::abs(p.r1 - radius) < kSameForm_mm;
-}
-
-bool is_flat(const Cutter& cutter) {
-  const std::span<const ProfilePiece> pieces = cutter.profile();
-  if (cutter.undercuts() || pieces.empty()) return false;
-  const ProfilePiece& p = pieces[0];
-  return p.kind == ProfilePiece::Kind::kLine && p.r0 == 0 && p.z0 == 0 && p.z1 == 0 &&
-         p.r1 == cutter.radius_mm();
-}
 
 }  // namespace
 
 bool LaneScan::set(const Box& box, const Cutter& cutter, const CutMove& move) {
   cutter_ = &cutter;
-  form_ = is_ball(cutter) ? Form::kBall : is_flat(cutter) ? Form::kFlat : Form::kAny;
   box_ = box;
   start_ = move.from_mm;
   radius_ = cutter.radius_mm();
+  form_ = cutter.undercuts()               ? Form::kAny
+          : is_ball_end(cutter)            ? Form::kBall
+          : cutter.height_mm(radius_) <= 0 ? Form::kFlat
+                                           : Form::kAny;
   length_ = glm::length(move.to_mm - move.from_mm);
   if (length_ < kSame) return false;
   along_ = (move.to_mm - move.from_mm) / length_;
