@@ -48,13 +48,13 @@ constexpr double kHalfY = 0.5 * (kBlockY - 1);
 
 /// Room is looked for before at most kRunsAtOnce runs of kShortRun blocks, or a run of a tile.
 constexpr int kRunsAtOnce = 16;
-constexpr int kShortRun = 4;
+constexpr int kShortRun = 12;
 struct RunList {
   static constexpr int kFull = 128, kCapacity = kFull + kTileBlocksX;
   /// With what comes between two looks for room still within what 32-bit lanes add up
   /// (kRemovedUnit_mm).
-  static constexpr int kMostBlocks = 384;
-  static_assert(kRunsAtOnce * kShortRun <= 64 && kMostBlocks + 64 <= 512);
+  static constexpr int kMostBlocks = 320;
+  static_assert(kMostBlocks + kRunsAtOnce * kShortRun <= 512);
   int count = 0, blocks = 0;
   Run runs[kCapacity];
   bool is_full() const { return count > kFull || blocks > kMostBlocks; }
@@ -165,7 +165,8 @@ class RunWriter {
   /// made.
   [[gnu::always_inline]] void add_short(int bj, int b0, int count, const float* start,
                                         bool interior) {
-    if (b0 % kTileBlocksX + count <= kTileBlocksX && count <= kShortRun) [[likely]]
+    const int in_tile = static_cast<int>(static_cast<unsigned>(b0) % kTileBlocksX);
+    if (in_tile + count <= kTileBlocksX && count <= kShortRun) [[likely]]
       write(interior ? lists_.interior : lists_.edge, F4::load(start), b0, bj, count,
             first_cell(bj, b0));
     else

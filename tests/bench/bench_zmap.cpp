@@ -1,6 +1,7 @@
 // bench_zmap: how fast the Z-map cuts. Checks its results first, then times.
 //
 //   bench_zmap [--program FILE.ngc|FILE.canon --stock SPEC --tool SHAPE] [--cell MM] [--runs N]
+//              [--workload NAME] [--kernel NAME]
 //
 // Without a program: the generated workloads (workloads.h), run through rs274. For each: cutting
 // with one thread and with all, by each kernel of the machine, with and without a note of which
@@ -39,6 +40,7 @@ struct Arguments {
   std::vector<Job> jobs;
   double cell_mm = 0.1;
   int runs = 5;
+  std::string kernel;  ///< of the machine, all of them if empty
 };
 
 [[noreturn]] void fail(const std::string& why) {
@@ -162,7 +164,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void time_job(const Job& job, double cell_mm, int runs) {
+void time_job(const Job& job, double cell_mm, int runs, std::string_view only) {
   const std::vector<CutMove> moves = moves_of(job);
   const Result<Cutter> cutter = parse_shape(job.shape);
   if (!cutter) fail(cutter.error());
@@ -175,8 +177,9 @@ void time_job(const Job& job, double cell_mm, int runs) {
   };
   std::vector<Variant> variants;
   for (const ZMapKernel kernel : zmap_kernels()) {
+    if (!only.empty() && only != to_string(kernel)) continue;
     for (const int threads : {1, all}) {
-      if (threads > 1 && kernel != zmap_kernels().front()) continue;
+      if (threads > 1 && (kernel != zmap_kernels().front() || !only.empty())) continue;
       for (const bool cut_ids : {false, true}) variants.push_back({kernel, threads, cut_ids});
     }
   }
@@ -222,6 +225,7 @@ void time_job(const Job& job, double cell_mm, int runs) {
 Arguments parse(int argc, char** argv, const fs::path& folder) {
   Arguments a;
   Job own;
+  std::string workload;
   for (int i = 1; i < argc; i += 2) {
     const std::string key = argv[i];
     if (i + 1 >= argc) fail(key + " needs a value");
@@ -234,6 +238,10 @@ Arguments parse(int argc, char** argv, const fs::path& folder) {
       own.shape = value;
     else if (key == "--cell")
       a.cell_mm = std::strtod(value.c_str(), nullptr);
+    else if (key == "--workload")
+      workload = value;
+    else if (key == "--kernel")
+      a.kernel = value;
     else if (key == "--runs")
       a.runs = std::max(1, std::atoi(value.c_str()));
     else
@@ -245,6 +253,7 @@ Arguments parse(int argc, char** argv, const fs::path& folder) {
     return a;
   }
   for (const Workload& w : workloads()) {
+    if (w.turns || (!workload.empty() && workload != w.name)) continue;
     const fs::path path = folder / (std::string(w.name) + ".ngc");
     std::ofstream(path) << w.program();
     const std::string tool(w.tool);
@@ -259,7 +268,8 @@ int run(int argc, char** argv) {
   if (mkdtemp(pattern.data()) == nullptr) fail("no temporary folder");
   const Arguments arguments = parse(argc, argv, pattern);
   fmt::print("{}\n", machine());
-  for (const Job& job : arguments.jobs) time_job(job, arguments.cell_mm, arguments.runs);
+  for (const Job& job : arguments.jobs)
+    time_job(job, arguments.cell_mm, arguments.runs, arguments.kernel);
   fs::remove_all(pattern);
   return 0;
 }
