@@ -17,8 +17,8 @@ constexpr std::size_t kSweepsAtOnce = std::size_t{1} << 16;
 /// The kernels count blocks of cells from where a sweep begins, in single precision: exact up to
 /// 2^24.
 constexpr double kMostBlocks = 1 << 22;
-/// As many as fill half a megabyte.
-constexpr std::size_t kUnmarkedOps = 2048;
+/// Some rows of a program's finishing, four megabytes.
+constexpr std::size_t kUnmarkedOps = 16384;
 /// A depth is greater than another one if it is by more than this.
 constexpr double kDeeper_mm = 1e-4;
 

@@ -178,6 +178,21 @@ class CrossingWriter {
       if ((axis == 0 ? tops_.top(across, along) : tops_.top(along, across)) > foot) return false;
     return true;
   }
+  /// The same of whatever crosses lines within a box.
+  bool is_idle(const Vec2& low_mm, const Vec2& high_mm, double foot_mm) {
+    const auto foot = static_cast<float>(foot_mm);
+    const auto group = [&](int axis, double at_mm, int more) {
+      const int most = (axis == 0 ? grid_.nx() : grid_.ny()) - 1;
+      const double at = std::clamp(place(axis, at_mm) + more, 0.0, static_cast<double>(most));
+      return static_cast<int>(at) / kGroup;
+    };
+    const int first_x = group(0, low_mm.x, -2), last_x = group(0, high_mm.x, 2),
+              first_y = group(1, low_mm.y, -2), last_y = group(1, high_mm.y, 2);
+    for (int gy = first_y; gy <= last_y; ++gy)
+      for (int gx = first_x; gx <= last_x; ++gx)
+        if (tops_.top(gx, gy) > foot) return false;
+    return true;
+  }
   static constexpr int kGroup = GroupTops::kSide;
   /// Of fewer lines each is looked at by itself.
   static constexpr int kFewLines = 4;
@@ -393,12 +408,13 @@ class SweepRims {
       : writer_(grid, out),
         radius_(tool.radius),
         rim_mm_(surface_height(tool, tool.radius)),
-        top_mm_(grid.bounds_mm().max.z) {}
+        top_mm_(grid.bounds_mm().max.z),
+        together_mm_(2 * CrossingWriter::kGroup * std::min(grid.cell_x_mm(), grid.cell_y_mm())) {}
 
   void add(const SweepOp& op) {
     switch (op.kind) {
       case SweepOp::Kind::kStrip:
-        return add_strip(op);
+        return add_strip(op, true, true);
       case SweepOp::Kind::kCap:
         if (is_below_top(op.z)) add_cap(op);
         return;
@@ -411,15 +427,63 @@ class SweepRims {
     }
   }
 
+  /// The last first.
+  void add(std::span<const SweepOp> ops) {
+    while (!ops.empty()) {
+      const std::size_t count = strips_at_end(ops);
+      if (count < 2) {
+        add(ops.back());
+        ops = ops.first(ops.size() - 1);
+        continue;
+      }
+      const std::span<const SweepOp> strips = ops.last(count);
+      const bool left = !is_idle(strips, 1.0), right = !is_idle(strips, -1.0);
+      if (left || right)
+        for (auto op = strips.rbegin(); op != strips.rend(); ++op) add_strip(*op, left, right);
+      ops = ops.first(ops.size() - count);
+    }
+  }
+
  private:
+  /// How many strips without corners end `ops`, as long together as is looked at together.
+  std::size_t strips_at_end(std::span<const SweepOp> ops) const {
+    std::size_t count = 0;
+    for (double length = 0; count < ops.size(); ++count) {
+      const SweepOp& op = ops[ops.size() - 1 - count];
+      length += op.length;
+      if (op.kind != SweepOp::Kind::kStrip || has_corner(op) || length > together_mm_) break;
+    }
+    return count;
+  }
   bool is_below_top(double tip_z) const { return tip_z + rim_mm_ < top_mm_; }
   static bool always(const Vec2&) { return true; }
 
-  void add_strip(const SweepOp& op) {
-    const double end_z = op.z + op.slope * op.length;
+  static bool has_corner(const SweepOp& op) {
+    return op.joined && !op.straight_on && op.cos * op.next_sin - op.sin * op.next_cos != 0;
+  }
+  static Vec2 left_of(const SweepOp& op) { return {-op.sin, op.cos}; }
+  static double end_z(const SweepOp& op) { return op.z + op.slope * op.length; }
+
+  /// Whether it is certain that no mark is left of one side of strips.
+  bool is_idle(std::span<const SweepOp> strips, double sign) {
+    Vec2 low(HUGE_VAL), high(-HUGE_VAL);
+    double foot = HUGE_VAL;
+    for (const SweepOp& op : strips) {
+      const Vec2 from = Vec2(op.x, op.y) + sign * radius_ * left_of(op),
+                 to = from + op.length * Vec2(op.cos, op.sin);
+      low = glm::min(low, glm::min(from, to));
+      high = glm::max(high, glm::max(from, to));
+      foot = std::min(foot, std::min(op.z, end_z(op)) + rim_mm_);
+    }
+    return writer_.is_idle(low, high, foot);
+  }
+
+  void add_strip(const SweepOp& op, bool has_left, bool has_right) {
+    const double end_z = SweepRims::end_z(op);
     if (!is_below_top(std::min(op.z, end_z))) return;
-    const Vec2 from(op.x, op.y), along(op.cos, op.sin), left(-op.sin, op.cos);
+    const Vec2 from(op.x, op.y), along(op.cos, op.sin), left = left_of(op);
     for (const double sign : {1.0, -1.0}) {
+      if (!(sign > 0 ? has_left : has_right)) continue;
       const Vec2 outward = sign * left;
       cross_straight(
           {from + radius_ * outward, along, outward, op.length, op.z + rim_mm_, op.slope}, writer_);
@@ -429,8 +493,8 @@ class SweepRims {
 
   /// Where a path turns a little: the tool's side between those of the two strips.
   void add_corner(const SweepOp& op, const Vec2& tip, double tip_z) {
+    if (!has_corner(op)) return;
     const double turn = op.cos * op.next_sin - op.sin * op.next_cos;
-    if (op.straight_on || turn == 0) return;
     // Counter-clockwise from `first` to `last`.
     Vec2 first(op.sin, -op.cos), last(op.next_sin, -op.next_cos);
     if (turn < 0) {
@@ -503,6 +567,7 @@ class SweepRims {
 
   CrossingWriter writer_;
   double radius_, rim_mm_, top_mm_;
+  double together_mm_;  ///< length of strips whose sides are looked at together
 };
 
 }  // namespace
@@ -518,8 +583,7 @@ void find_wall_marks(const TileGrid& grid, const ConvexTool& tool, std::span<con
                      std::vector<PlacedMark>& out) {
   // Both sides may lie between the same two middles.
   if (2 * tool.radius < std::max(grid.cell_x_mm(), grid.cell_y_mm())) return;
-  SweepRims rims(grid, tool, out);
-  for (auto op = ops.rbegin(); op != ops.rend(); ++op) rims.add(*op);
+  SweepRims(grid, tool, out).add(ops);
 }
 
 void find_side_marks(const TileGrid& grid, const Vec2& center, double radius_mm, bool is_bore,
