@@ -1,6 +1,7 @@
 #include "stock/zmap/height_sweeper.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "stock/move_reach.h"
@@ -128,12 +129,11 @@ void HeightSweeper::run(HollowColumns* hollows, std::size_t report_count) {
 /// Most sides of a path are cut away by what follows: of them nothing is found where many sweeps
 /// are looked at together, after the last of them.
 void HeightSweeper::put_off_walls() {
-  for (const SweepOp& op : ops_) {
-    const bool may_leave = std::any_of(tools_.begin(), tools_.end(), [&](const ConvexTool& tool) {
-      return may_leave_wall(grid, tool, op);
-    });
-    if (may_leave) unmarked_.push_back(op);
-  }
+  double highest = -HUGE_VAL;
+  for (const ConvexTool& tool : tools_)
+    highest = std::max(highest, highest_wall_tip_mm(grid, tool));
+  for (const SweepOp& op : ops_)
+    if (lowest_tip_mm(op) < highest) unmarked_.push_back(op);
   if (unmarked_.size() >= kUnmarkedOps) mark_walls();
 }
 

@@ -572,11 +572,13 @@ class SweepRims {
 
 }  // namespace
 
-bool may_leave_wall(const TileGrid& grid, const ConvexTool& tool, const SweepOp& op) {
-  double tip_z = op.z;
-  if (op.kind == SweepOp::Kind::kStrip) tip_z = std::min(op.z, op.z + op.slope * op.length);
-  if (op.kind == SweepOp::Kind::kHelix) tip_z = op.z - op.slope * op.length;
-  return tip_z + surface_height(tool, tool.radius) < grid.bounds_mm().max.z;
+double highest_wall_tip_mm(const TileGrid& grid, const ConvexTool& tool) {
+  return grid.bounds_mm().max.z - surface_height(tool, tool.radius) + kRounding_mm;
+}
+
+double lowest_tip_mm(const SweepOp& op) {
+  if (op.kind == SweepOp::Kind::kStrip) return std::min(op.z, op.z + op.slope * op.length);
+  return op.kind == SweepOp::Kind::kHelix ? op.z - op.slope * op.length : op.z;
 }
 
 void find_wall_marks(const TileGrid& grid, const ConvexTool& tool, std::span<const SweepOp> ops,

@@ -20,8 +20,10 @@ namespace kerf {
 void find_wall_marks(const TileGrid& grid, const ConvexTool& tool, std::span<const SweepOp> ops,
                      std::vector<PlacedMark>& out);
 
-/// False where a sweep's upright sides are above the blank, all of them.
-bool may_leave_wall(const TileGrid& grid, const ConvexTool& tool, const SweepOp& op);
+/// How high a tool's tip may be for its upright sides to begin within the blank.
+double highest_wall_tip_mm(const TileGrid& grid, const ConvexTool& tool);
+/// The lowest tip of a sweep.
+double lowest_tip_mm(const SweepOp& op);
 
 /// Of an upright round side of the blank about `center`: material is within (`is_bore`: beyond) it.
 void find_side_marks(const TileGrid& grid, const Vec2& center, double radius_mm, bool is_bore,
