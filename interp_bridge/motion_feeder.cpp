@@ -15,7 +15,7 @@
 namespace kerf {
 namespace {
 
-constexpr std::size_t kBatchMotions = 4096;
+constexpr std::size_t kBatchMotions = 512;
 /// A circle with overburn behind another gives three motions; no command but a spline gives more.
 constexpr std::size_t kMotionsPerCommand = 3;
 constexpr std::chrono::milliseconds kOldBatch{40};

@@ -8,7 +8,7 @@
 namespace kerf {
 namespace {
 
-constexpr std::size_t kFirstRing = 1024;
+constexpr std::size_t kFirstRing = 64;
 
 bool is_feeding(const Motion& m) { return is_feed(m) || m.kind == MotionKind::kProbe; }
 
