@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/text_scan.h"
 #include "stock/cutter/scan.h"
@@ -26,6 +27,9 @@ constexpr double kMostCoarseCells = 6.4e7;
 constexpr double kSteps[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
 /// A blank without thickness or width is no blank: the least size that a guess gives it.
 constexpr double kLeastGuess_mm = 1.0;
+/// Who goes to the next cut by rapids does so as often as he goes up and down within a cut, or
+/// nearly; a post without rapids has one or two at a change of tools.
+constexpr std::size_t kLinksARapid = 4;
 
 /// What a block says outside its comments, as far as comments need it.
 struct BlockWords {
@@ -188,14 +192,45 @@ std::vector<CommentText> comments_with_units(const Program& program, const std::
   return out;
 }
 
+void BlankGuess::Sideways::add(double middle_mm, double high_mm, double length_mm) {
+  (middle_mm > 0 ? above_zero_mm : below_zero_mm) += length_mm;
+  highest_mm = any ? std::max(highest_mm, high_mm) : high_mm;
+  any = true;
+}
+
+void BlankGuess::Sideways::add_level(double z_mm, double length_mm) {
+  const auto level = levels_mm.find(z_mm);
+  if (level != levels_mm.end()) {
+    level->second += length_mm;
+  } else if (levels_mm.size() < kMostLevels) {
+    levels_mm.emplace(z_mm, length_mm);
+  }
+}
+
+void BlankGuess::take(const FeedLinks::Ended& ended) {
+  const auto& [z, level, is_link] = ended;
+  if (is_link && (links_.size() < kMostLevels || links_.contains(z))) {
+    links_[z].length_mm += level.length_mm;
+    links_[z].way.extend(level.way);
+    ++link_count_;
+    return;
+  }
+  sideways_.add(z, z, level.length_mm);
+  sideways_.add_level(z, level.length_mm);
+  feeds_mm_.extend(level.way);
+}
+
 void BlankGuess::add(const Motion& m, double tool_radius_mm) {
   if (m.unknown_to != 0 || (m.kind != MotionKind::kTraverse && !is_feed(m))) return;
   all_mm_.extend(m.to_mm);
+  const bool is_kept = watch_.keeps_back(m);
+  if (!is_kept)
+    if (const std::optional<FeedLinks::Ended> ended = watch_.end_before(m)) take(*ended);
   if (!is_feed(m)) {
     const bool level = m.start_known && m.from_mm.z == m.to_mm.z;
     if (!level || (m.from_mm.x == m.to_mm.x && m.from_mm.y == m.to_mm.y)) return;
-    lowest_rapid_mm_ = has_rapid_ ? std::min(lowest_rapid_mm_, m.to_mm.z) : m.to_mm.z;
-    has_rapid_ = true;
+    lowest_rapid_mm_ = rapid_count_ > 0 ? std::min(lowest_rapid_mm_, m.to_mm.z) : m.to_mm.z;
+    ++rapid_count_;
     return;
   }
   // A plunge or retraction at feed starts in the air: its end alone says where there is material.
@@ -206,20 +241,12 @@ void BlankGuess::add(const Motion& m, double tool_radius_mm) {
   has_feed_ = true;
   way.min -= Vec3(tool_radius_mm, tool_radius_mm, 0);
   way.max += Vec3(tool_radius_mm, tool_radius_mm, 0);
+  const double length = path_length_mm(m);
+  if (is_kept) return watch_.add_level(m, length, way);
   feeds_mm_.extend(way);
   if (!sideways || !m.start_known) return;
-  const double length = path_length_mm(m);
-  const double middle = 0.5 * (m.from_mm.z + m.to_mm.z);
-  (middle > 0 ? sideways_above_zero_mm_ : sideways_below_zero_mm_) += length;
-  highest_sideways_mm_ = has_sideways_ ? std::max(highest_sideways_mm_, m.to_mm.z) : m.to_mm.z;
-  has_sideways_ = true;
-  if (m.from_mm.z != m.to_mm.z) return;
-  const auto level = levels_mm_.find(m.to_mm.z);
-  if (level != levels_mm_.end()) {
-    level->second += length;
-  } else if (levels_mm_.size() < kMostLevels) {
-    levels_mm_.emplace(m.to_mm.z, length);
-  }
+  sideways_.add(0.5 * (m.from_mm.z + m.to_mm.z), m.to_mm.z, length);
+  if (m.from_mm.z == m.to_mm.z) sideways_.add_level(m.to_mm.z, length);
 }
 
 void BlankGuess::widen(const Box& feeds_mm, double tool_radius_mm) {
@@ -239,34 +266,52 @@ void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double too
   all_mm_.extend(way);
   if (!is_feed(m)) return;
   lowest_feed_mm_ = has_feed_ ? std::min(lowest_feed_mm_, way.min.z) : way.min.z;
-  highest_sideways_mm_ = has_sideways_ ? std::max(highest_sideways_mm_, way.max.z) : way.max.z;
-  has_feed_ = has_sideways_ = true;
-  sideways_above_zero_mm_ += way.max.z > 0 ? glm::length(way.size()) : 0;
+  has_feed_ = true;
+  sideways_.add(way.max.z, way.max.z, way.max.z > 0 ? glm::length(way.size()) : 0);
   way.min -= Vec3(tool_radius_mm, tool_radius_mm, 0);
   way.max += Vec3(tool_radius_mm, tool_radius_mm, 0);
   feeds_mm_.extend(way);
+}
+
+BlankGuess BlankGuess::without_air() const {
+  BlankGuess all = *this;
+  if (const std::optional<FeedLinks::Ended> ended = watch_.kept_back()) all.take(*ended);
+  const FeedLinks::Levels links = std::exchange(all.links_, {});
+  // Over what stands in the middle of a part a program goes up and down, too.
+  const auto air = all.sideways_.any ? links.upper_bound(all.sideways_.highest_mm) : links.begin();
+  const bool goes_by_feed = all.link_count_ > kLinksARapid * rapid_count_ &&
+                            std::distance(air, links.end()) <= kMostLinkLevels;
+  for (auto link = links.begin(); link != (goes_by_feed ? air : links.end()); ++link)
+    all.take({link->first, link->second, false});
+  return all;
 }
 
 /// `lowest`: of the feeds. Whole mm, but for a skin.
 BlankGuess::Top BlankGuess::top(double lowest) const {
   double top = 0;
   double above = std::numeric_limits<double>::infinity();  // how much more may be there
-  if (has_rapid_) above = lowest_rapid_mm_;
-  if (sideways_above_zero_mm_ > sideways_below_zero_mm_) {
-    top = highest_sideways_mm_;
-    if (levels_mm_.size() >= 2 && levels_mm_.rbegin()->first == top) {
-      const double step = top - std::next(levels_mm_.rbegin())->first;
+  if (rapid_count_ > 0) above = lowest_rapid_mm_;
+  if (sideways_.above_zero_mm > sideways_.below_zero_mm) {
+    top = sideways_.highest_mm;
+    const std::map<double, double>& levels = sideways_.levels_mm;
+    if (levels.size() >= 2 && levels.rbegin()->first == top) {
+      const double step = top - std::next(levels.rbegin())->first;
       if (top + step <= above) top += step;
     }
   }
-  if (!has_feed_ || !has_sideways_ || lowest < top) return {outward(top, true), false};
+  if (!has_feed_ || !sideways_.any || lowest < top) return {outward(top, true), false};
   const double room = above > lowest ? 0.5 * (above - lowest) : kSkin_mm;
   return {lowest + std::min(kSkin_mm, room), true};
 }
 
-bool BlankGuess::is_skin() const { return has_feed_ && top(lowest_feed_mm_).skin; }
+bool BlankGuess::is_skin() const {
+  const BlankGuess cut = without_air();
+  return cut.has_feed_ && cut.top(cut.lowest_feed_mm_).skin;
+}
 
-Blank BlankGuess::blank() const {
+Blank BlankGuess::blank() const { return without_air().blank_of_feeds(); }
+
+Blank BlankGuess::blank_of_feeds() const {
   Box box = has_feed_ ? feeds_mm_ : all_mm_;
   if (box.empty()) box.extend(Vec3(0));
   const double lowest = has_feed_ ? lowest_feed_mm_ : 0;

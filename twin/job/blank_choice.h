@@ -13,6 +13,7 @@
 #include "stock/blank.h"
 #include "stock/cutter/tool_hints.h"
 #include "stock/stock_model.h"
+#include "twin/job/feed_links.h"
 
 namespace kerf {
 
@@ -43,6 +44,8 @@ class BlankGuess {
   ///          down from there to the next level above it, as far as the lowest rapid allows. Where
   ///          nothing would be cut (pens, engravings at Z0) kSkin_mm above the feeds, or half the
   ///          way to the rapids
+  ///          way to the rapids. Ways between a rise and a descent above all else that is fed
+  ///          sideways, of a program that hardly has rapids, go through the air and do not count
   ///   floor  the lowest feed move less the margin; Z0 if the program never goes below it (zero on
   ///   the table)
   /// Without feed moves: around the ends of the traverses. Never empty.
@@ -54,26 +57,42 @@ class BlankGuess {
 
   static constexpr double kSkin_mm = 0.5;
   static constexpr std::size_t kMostLevels = 1000;
+  /// Heights at which a program may go from cut to cut at feed.
+  static constexpr std::ptrdiff_t kMostLinkLevels = 4;
 
  private:
   struct Top {
     double z_mm = 0;
     bool skin = false;  ///< just above the only level that is fed
   };
+  /// Of the feeds that go sideways.
+  struct Sideways {
+    double above_zero_mm = 0;  ///< length in X and Y above Z0 ...
+    double below_zero_mm = 0;  ///< ... and below or on it
+    double highest_mm = 0;
+    bool any = false;
+    std::map<double, double> levels_mm;  ///< level ones: height, length; at most kMostLevels
+
+    void add(double middle_mm, double high_mm, double length_mm);
+    void add_level(double z_mm, double length_mm);
+  };
+  void take(const FeedLinks::Ended& ended);
+  /// Without the ways between cuts; with those that only looked so.
+  BlankGuess without_air() const;
   Top top(double lowest) const;
+  Blank blank_of_feeds() const;
 
   double margin_mm_;
   Box feeds_mm_;  ///< grown by the tool's radius in X and Y
   Box all_mm_;    ///< ends of every move
   double lowest_feed_mm_ = 0;
   bool has_feed_ = false;
-  double sideways_above_zero_mm_ = 0;  ///< feed length in X and Y above Z0 ...
-  double sideways_below_zero_mm_ = 0;  ///< ... and below or on it
-  double highest_sideways_mm_ = 0;
-  bool has_sideways_ = false;
+  Sideways sideways_;
+  FeedLinks watch_;
+  FeedLinks::Levels links_;  ///< they look so; at most kMostLevels
+  std::size_t link_count_ = 0;
   double lowest_rapid_mm_ = 0;  ///< of traverses that go sideways
-  bool has_rapid_ = false;
-  std::map<double, double> levels_mm_;  ///< level feed moves: height, length; at most kMostLevels
+  std::size_t rapid_count_ = 0;
 };
 
 /// Least of 0.01, 0.02, 0.05, 0.1, 0.2, 0.5 mm that gives the blank at most 4 million cells, so

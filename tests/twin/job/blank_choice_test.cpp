@@ -27,6 +27,44 @@ TEST(BlankGuess, ZeroOnTheTableGivesAFloorAtZero) {
   EXPECT_EQ(box, (Box{{2, 2, 0}, {68, 38, 18}}));
 }
 
+TEST(BlankGuess, WaysToTheNextCutAtFeedGoThroughTheAir) {
+  // Two slots of 10 mm below Z0, 400 mm from each other: most of the way is above.
+  MotionList slots;
+  slots.traverse({10, 10, 10});
+  for (const double x : {10.0, 410.0, 10.0}) {
+    slots.feed({x, 10, -2}).feed({x + 10, 10, -2}).feed({x + 10, 10, 5});
+    slots.feed({x == 10 ? 410.0 : 10.0, 10, 5});
+  }
+  EXPECT_EQ(guess(slots), (Box{{2, 2, -7}, {428, 18, 0}}));
+  // Zero on the table: levels at 8 and 6, ways at 13.
+  MotionList table;
+  table.traverse({0, 0, 30});
+  for (const double z : {8.0, 6.0})
+    table.feed({0, 0, z}).feed({50, 0, z}).feed({50, 0, 13}).feed({0, 0, 13});
+  EXPECT_EQ(guess(table).max.z, 10);
+  // .. and home at feed, far outside.
+  EXPECT_EQ(guess(table.feed({-200, 0, 13})), (Box{{-8, -8, 0}, {58, 8, 10}}));
+}
+
+TEST(BlankGuess, WaysOverWhatStandsInAPartAreCuts) {
+  // Traverses between the cuts: the boss at 8 is cut over, up, along and down.
+  MotionList boss;
+  boss.traverse({0, 0, 30});
+  for (const double y : {0.0, 3.0, 6.0}) {
+    boss.traverse({0, y, 30}).feed({0, y, 2}).feed({20, y, 2}).feed({20, y, 8});
+    boss.feed({30, y, 8}).feed({30, y, 2}).feed({50, y, 2}).traverse({50, y, 30});
+  }
+  EXPECT_EQ(guess(boss).max.z, 14);
+  // A relief of pillars: more heights than anyone travels at.
+  MotionList relief;
+  relief.traverse({0, 0, 30});
+  for (int i = 0; i < 6; ++i) {
+    const double x = 10 * i, z = 2 + 2.0 * i;
+    relief.feed({x, 0, 1}).feed({x, 0, z}).feed({x + 10, 0, z}).feed({x + 10, 0, 1});
+  }
+  EXPECT_EQ(guess(relief).max.z, 14);
+}
+
 TEST(BlankGuess, FullCirclesCountWhole) {
   const Box box =
       guess(MotionList().at({10, 0, -1}).arc({10, 0, -1}, {0, 0, -1}, {0, 0, 1}, 2 * kPi));
