@@ -71,6 +71,64 @@ std::uint32_t file_in(const std::string& message, const std::vector<std::string>
   return 0;
 }
 
+/// A line as the interpreter takes it: in lower case, without blanks, comments and N word.
+std::string bare_block(std::string_view line) {
+  std::string block;
+  bool in_comment = false;
+  for (const char c : line) {
+    if (c == ';' && !in_comment) break;
+    if (c == '(' || c == ')') {
+      in_comment = c == '(';
+    } else if (!in_comment && !is_space(c)) {
+      block += to_lower(c);
+    }
+  }
+  if (!block.empty() && block[0] == 'n') {
+    block.erase(0, std::min(block.find_first_not_of("0123456789", 1), block.size()));
+  }
+  return block;
+}
+
+/// What LinuxCNC has for codes of other controls: of one that it does not know, or knows as
+/// something else.
+struct ForeignCode {
+  double code;
+  const char* hint;
+};
+constexpr ForeignCode kForeignCodes[] = {
+    {5.1, tr_noop("here G5.1 is a spline; what looks ahead elsewhere is G64 P: leave it out")},
+    {31, tr_noop("here a probing move is G38.2")},
+    {54.1, tr_noop("here work offsets are G54 to G59 and G59.1 to G59.3")},
+    {65,
+     tr_noop("here a macro is a subroutine: o<name> call [..], with its arguments in brackets")},
+    {68, tr_noop("here a work offset turns: G10 L2 P1 R30")},
+};
+
+/// Of what other controls write, and LinuxCNC in another way.
+std::string foreign_hint(std::string_view block) {
+  const std::string bare = bare_block(block);
+  constexpr std::array kMacroWords{"while[", "if[", "goto", "end", "do"};
+  if (std::any_of(kMacroWords.begin(), kMacroWords.end(),
+                  [&](const char* word) { return bare.starts_with(word); })) {
+    return tr(
+        "the macro language of another control; here it is o100 while [..] and o100 endwhile, "
+        "o101 if [..] and o101 endif, and there is no GOTO");
+  }
+  if (bare.starts_with(':')) return tr("here a program has no number: leave the line out");
+  if (bare.starts_with('$')) return tr("a command of GRBL, not of a program: leave it out");
+  if (bare.find(",r") != bare.npos || bare.find(",c") != bare.npos)
+    return tr("here no word rounds or breaks a corner: its arc or its chamfer is a block");
+  WordScanner words(block);
+  char letter = 0;
+  std::optional<double> number;
+  while (words.next(letter, number)) {
+    if (letter != 'g' || !number) continue;
+    for (const ForeignCode& foreign : kForeignCodes)
+      if (std::abs(*number - foreign.code) < 1e-6) return tr(foreign.hint);
+  }
+  return {};
+}
+
 /// An arc as some write it, with all three words of its centre: G2 X10 Y0 I5 J0 K0.
 bool has_idle_k(std::string_view block) {
   WordScanner words(block);
@@ -85,16 +143,18 @@ bool has_idle_k(std::string_view block) {
   return idle && (has_y || !has_z);
 }
 
-/// "G0 G91 G28 Z0" has G28.
-bool has_g_code(std::string_view block, int code) {
+bool has_word(std::string_view block, char wanted, double value) {
   WordScanner words(block);
   char letter = 0;
   std::optional<double> number;
   while (words.next(letter, number)) {
-    if (letter == 'g' && number == code) return true;
+    if (letter == wanted && number == value) return true;
   }
   return false;
 }
+
+/// "G0 G91 G28 Z0" has G28.
+bool has_g_code(std::string_view block, int code) { return has_word(block, 'g', code); }
 
 /// "start=(X-40.0000,Y50.0000) center=(X-80.0000,Y90.0000) end=(X-30.0000,Y40.0000)": with the
 /// centre's words taken as a place (G90.1) both ends are as far from it.
@@ -124,6 +184,10 @@ std::string hint_for(const std::string& message, std::string_view block) {
     return tr("a subroutine that the program calls must be in it, or in NAME.ngc beside it");
   }
   if (has("Bad character '\\357'")) return tr("store the program without a byte order mark");
+  const bool may_be_foreign = has("Unknown word") || has("Unknown g code used") ||
+                              has("Bad character") || has("All axes missing");
+  if (may_be_foreign)
+    if (std::string hint = foreign_hint(block); !hint.empty()) return hint;
   if (has("Bad character 'u'") || has("Bad character 'v'") || has("Bad character 'w'")) {
     return tr("rs274 knows the axes X Y Z A B C only");
   }
@@ -160,6 +224,9 @@ std::string hint_for(const std::string& message, std::string_view block) {
                                 has_g_code(block, 83) || has_g_code(block, 85))) {
     return tr("LinuxCNC dwells at the bottom of G82, G86, G88 and G89 only: no P here");
   }
+  if (has("Nested comment found")) return tr("a comment ends at its first ): no ( lies within it");
+  if (has("Unclosed comment found")) return tr("a comment ends in its own line");
+  if (has("with zero feed rate") && has_word(block, 'f', 0)) return tr("the block itself says F0");
   if (has("not found in the tool table")) return tr("give the machine's table with --tool-table");
   return {};
 }
@@ -222,24 +289,6 @@ InterpreterMessage parse_interpreter_message(std::string_view stderr_text) {
 }
 
 namespace {
-
-/// A line as the interpreter takes it: in lower case, without blanks, comments and N word.
-std::string bare_block(std::string_view line) {
-  std::string block;
-  bool in_comment = false;
-  for (const char c : line) {
-    if (c == ';' && !in_comment) break;
-    if (c == '(' || c == ')') {
-      in_comment = c == '(';
-    } else if (!in_comment && !is_space(c)) {
-      block += to_lower(c);
-    }
-  }
-  if (!block.empty() && block[0] == 'n') {
-    block.erase(0, std::min(block.find_first_not_of("0123456789", 1), block.size()));
-  }
-  return block;
-}
 
 /// The subroutines of a file that has nothing beside them, "o<a>, o<b>"; empty: it has more.
 std::string only_subroutines(const std::string& path) {

@@ -103,6 +103,46 @@ TEST(InterpreterDiagnostic, DwellsAndPlanesOfOtherControls) {
             "an arc of X and Z lies in G18");
 }
 
+TEST(InterpreterDiagnostic, WordsOfOtherControls) {
+  const std::string macro =
+      "the macro language of another control; here it is o100 while [..] and o100 endwhile, o101 "
+      "if [..] and o101 endif, and there is no GOTO";
+  for (const char* block : {"WHILE [#1 GT #2] DO1", "N20 END1", "goto 10"})
+    EXPECT_EQ(hint_of(block, "Unknown word where unary operation could be"), macro) << block;
+  EXPECT_EQ(hint_of("IF [#1 EQ 0] GOTO 10", "Unknown word starting with f"), macro);
+  EXPECT_EQ(hint_of("o100 while [#1 GT #2", "Unknown word where unary operation could be"), "");
+  EXPECT_EQ(hint_of("X[whil[1]]", "Unknown word starting with h"), "");
+
+  const std::string unknown = "Unknown g code used";
+  EXPECT_EQ(hint_of("G31 Z-10 F50", unknown), "here a probing move is G38.2");
+  EXPECT_EQ(hint_of("N5 G54.1 P3", unknown), "here work offsets are G54 to G59 and G59.1 to G59.3");
+  EXPECT_EQ(hint_of("G65 P9810", unknown),
+            "here a macro is a subroutine: o<name> call [..], with its arguments in brackets");
+  EXPECT_EQ(hint_of("G68 X0 Y0 R45", unknown), "here a work offset turns: G10 L2 P1 R30");
+  EXPECT_EQ(hint_of("G05.1 Q1", "All axes missing with motion code"),
+            "here G5.1 is a spline; what looks ahead elsewhere is G64 P: leave it out");
+  EXPECT_EQ(hint_of("G05", "All axes missing with motion code"), "");
+  EXPECT_EQ(hint_of("(G31) G36 Z1", unknown),
+            "LinuxCNC has no such code and stops here, too, but where an INI remaps it (--ini)");
+
+  EXPECT_EQ(hint_of(":O1001", "Bad character ':' used"),
+            "here a program has no number: leave the line out");
+  EXPECT_EQ(hint_of("G1 X5 ,R2", "Bad character ',' used"),
+            "here no word rounds or breaks a corner: its arc or its chamfer is a block");
+  EXPECT_EQ(hint_of("G1 X5,5", "Bad character ',' used"), "");
+  EXPECT_EQ(hint_of("$H (home)", "Unknown word where unary operation could be"),
+            "a command of GRBL, not of a program: leave it out");
+}
+
+TEST(InterpreterDiagnostic, CommentsAndFeedsThatAreNone) {
+  EXPECT_EQ(hint_of("(a (b) c)", "Nested comment found"),
+            "a comment ends at its first ): no ( lies within it");
+  EXPECT_EQ(hint_of("( a", "Unclosed comment found"), "a comment ends in its own line");
+  EXPECT_EQ(hint_of("G1 F0.000 X1", "Cannot do g1 with zero feed rate"),
+            "the block itself says F0");
+  EXPECT_EQ(hint_of("G1 X1 (F0)", "Cannot do g1 with zero feed rate"), "");
+}
+
 TEST(InterpreterDiagnostic, CentresWithAnIdleWord) {
   const std::string refused = "K word given for arc in xy plane";
   for (const char* const idle :

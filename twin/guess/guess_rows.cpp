@@ -38,7 +38,7 @@ GuessRow tool_row(const ToolUse& use, const ToolSources& sources, bool only_tool
 std::vector<GuessRow> guess_rows(const SessionOptions& options, const ProgramFront& front,
                                  std::span<const ToolUse> tools) {
   std::vector<GuessRow> rows;
-  if (front.blank_guessed && front.blank) {
+  if (front.blank_guessed && front.blank && !front.guess_reason.empty()) {
     rows.push_back({tr("blank"), "--stock", stock_spec(*front.blank), front.guess_reason});
   }
   if (front.blank_guessed && front.is_sheet() && options.beam.trigger &&

@@ -68,6 +68,7 @@ class ProgramSurvey {
                                   std::span<const TorchMaterial> materials) const;
   /// The blank that fits, wide enough for the tools of tools().
   Blank blank() const;
+  bool has_moves() const { return turning_ || blank_.is_round() || blank_.guess().has_moves(); }
   /// What blank() goes by, as stock-guessed says it.
   std::string blank_reason() const;
   /// blank() is a skin over what a pen draws or a knife cuts (CheckOptions::is_drawn).

@@ -216,7 +216,7 @@ bool take_guesses(const SessionOptions& options, const ProgramSurvey& survey, Pr
     front.blank_origin = tr("guessed");
     front.blank_guessed = true;
     front.is_drawn = survey.is_drawn();
-    front.guess_reason = survey.blank_reason();
+    if (survey.has_moves()) front.guess_reason = survey.blank_reason();
     if (auto warning = survey.warning(*front.blank, front.guess_reason)) {
       remarks.add(std::move(*warning));
     }

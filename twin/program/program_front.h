@@ -67,7 +67,7 @@ struct ProgramFront {
   HoldingList held_by;  ///< of a workpiece that turns; null: nothing holds it
 
   bool blank_guessed = false;
-  std::string guess_reason;  ///< of that
+  std::string guess_reason;  ///< of that; empty: the program moves nothing
   bool is_drawn = false;     ///< ProgramSurvey::is_drawn(), of a blank that was guessed
 
   bool is_turned() const { return choice.kind == StockKind::kTurning; }

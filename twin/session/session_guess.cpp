@@ -74,7 +74,7 @@ bool Session::take_guesses(const ProgramSurvey& survey, Diagnostics& diagnostics
     front_.blank_origin = tr("guessed");
     front_.blank_guessed = true;
     front_.is_drawn = survey.is_drawn();
-    front_.guess_reason = survey.blank_reason();
+    if (survey.has_moves()) front_.guess_reason = survey.blank_reason();
     if (auto warning = survey.warning(*front_.blank, front_.guess_reason)) {
       report_.findings.add(std::move(*warning));
     }
