@@ -155,7 +155,7 @@ std::string engagement_text(const Engagement& engagement) {
   if (none && engagement.unmeasured_mm <= 0) out += label + tr("no tool was in material\n");
   if (engagement.unmeasured_mm >= kShown_mm)
     out += label + trf("not measured: {:.0f} mm of undercutting tools, of tools that turn about on "
-                       "their way, of threads, of arcs in G18 and G19 of a mill, in a model that "
+                       "their way, of threads, of arcs of tilted tools, in a model that "
                        "cannot be asked, or where no look has seen what was removed\n",
                        engagement.unmeasured_mm);
   return out;

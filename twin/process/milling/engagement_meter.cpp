@@ -88,25 +88,51 @@ bool EngagementMeter::is_same(const EngagementLook& a, const EngagementLook& b) 
 }
 
 EngagementLook EngagementMeter::look(double at) {
+  const double part = upright_ ? 0.5 : at;
+  const CutMove& move = upright_ ? (line_ = upright_->line_at(at, until_)) : *move_;
   if (points_ != nullptr)
-    return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, *move_,
-                       {at, anticlockwise_});
-  const EngagementScan::Look ahead{
-      at, has_held_ ? &held_ : nullptr, anticlockwise_, owners_, &ways_, is_brief_};
-  return scan_.look_ahead(*heights_, *cutter_, *move_, ahead);
+    return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, move,
+                       {part, anticlockwise_});
+  EngagementScan::Look ahead;
+  ahead.at = part;
+  ahead.held = has_held_ ? &held_ : nullptr;
+  ahead.anticlockwise = anticlockwise_;
+  ahead.owners = owners_, ahead.ways = &ways_;
+  ahead.is_brief = is_brief_;
+  // Under its centre it never comes back to where it was lower.
+  const bool may_have_cut = upright_ && (!turnings_.empty() || upright_->is_hill(0, 1));
+  ahead.own = may_have_cut ? &*upright_ : nullptr;
+  ahead.own_part = at;
+  return scan_.look_ahead(*heights_, *cutter_, move, ahead);
 }
 
 void EngagementMeter::flush() {
   if (to_ <= from_) return;
   const EngagementLook mean = sum_.mean(first_, to_ - from_);
-  const CutMove part = part_of(*move_, from_, to_);
-  const EngagedWay way{(to_ - from_) * length_mm_, (to_ - from_) * duration_s_, down_rad_};
-  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from_ * duration_s_};
+  if (!upright_ || !mean.is_engaged()) {
+    tell(mean, from_, to_);
+  } else {
+    // How steep it goes differs along it.
+    const double turn = (to_ - from_) * upright_->sweep_rad();
+    const int parts = std::max(1, static_cast<int>(std::ceil(turn / kUprightPart_rad)));
+    for (int k = 0; k < parts; ++k) {
+      const double step = (to_ - from_) / parts;
+      tell(mean, from_ + k * step, k + 1 == parts ? to_ : from_ + (k + 1) * step);
+    }
+  }
+  from_ = to_;
+}
+
+void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
+  const CutMove part = part_of(*move_, from, to);
+  const double length_mm = (to - from) * length_mm_;
+  const double down_rad = upright_ ? down_of(part, length_mm) : down_rad_;
+  const EngagedWay way{length_mm, (to - from) * duration_s_, down_rad};
+  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from * duration_s_};
   if (hearer_) hearer_(told);
   const std::uint32_t pass = log_.add(told);
   if (pass != EngagementLog::kNoPass) taken_.pass = pass;
   if (mean.is_engaged()) taken_.sums.add(mean, way);
-  from_ = to_;
 }
 
 void EngagementMeter::Sum::add(const EngagementLook& look, double share) {
@@ -204,27 +230,45 @@ bool EngagementMeter::find_material(std::optional<HeightGrid>& heights) {
   const StockModel& model = stock_.bare();
   if (const auto* const present = dynamic_cast<const PresentHeights*>(&model)) {
     heights = present->present_heights();
-    if (!heights || !EngagementScan::takes(*cutter_, *move_)) return false;
+    const bool takes = upright_ ? EngagementScan::takes(*cutter_, upright_->line_at(0, 1))
+                                : EngagementScan::takes(*cutter_, *move_);
+    if (!heights || !takes) return false;
     heights_ = &*heights;
     owners_ = model.keeps_cut_ids() ? present : nullptr;
     return true;
   }
   points_ = dynamic_cast<const SolidPoints*>(&model);
-  return points_ != nullptr && SolidFront::takes(*cutter_, *move_);
+  if (points_ == nullptr) return false;
+  return upright_ ? SolidFront::takes(*cutter_, upright_->line_at(0, 1))
+                  : SolidFront::takes(*cutter_, *move_);
 }
 
 /// By looks at so many places after its begin, and where these differ between them.
-void EngagementMeter::take_along(int places) {
-  const double last_at = 1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
-  Node before{0, look(0)};
+void EngagementMeter::take_along(double from, double to, int places) {
+  const double last_at =
+      to - std::min(kLeastPart * (to - from), kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
+  Node before{from, look(from)};
   for (int k = 1; k <= places; ++k) {
-    Node node{k == places ? 1 : static_cast<double>(k) / places, {}};
+    Node node{k == places ? to : from + (to - from) * k / places, {}};
     node.look = look(std::min(node.at, last_at));
     refine(before, node, kMostHalvings);
     before = node;
   }
   last_ = before.look;
   since_mm_ = -1;
+}
+
+/// From one place to the next where it turns back, seen from above.
+void EngagementMeter::take_upright(double farthest_mm) {
+  double from = 0;
+  turnings_.push_back(1);
+  for (const double to : turnings_) {
+    until_ = to;
+    const double apart = std::max((to - from) * length_mm_ / farthest_mm,
+                                  (to - from) * upright_->sweep_rad() / kUprightTurn_rad);
+    take_along(from, to, static_cast<int>(std::clamp(std::ceil(apart), 1.0, kMostNodes)));
+    from = to;
+  }
 }
 
 double EngagementMeter::closest_mm() const {
@@ -239,6 +283,9 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   anticlockwise_ = feed.anticlockwise;
   length_mm_ = way_length_mm(move);
   down_rad_ = down_of(move, length_mm_);
+  upright_ = UprightArc::of(move);
+  turnings_ = upright_ ? upright_->turning_parts() : std::vector<double>{};
+  until_ = 1;
   taken_ = {};
   taken_.measured = true;
   if (length_mm_ <= 0) return taken_;
@@ -252,8 +299,8 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   const bool steep = is_steep(move);
   const double farthest =
       std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  if (length_mm_ < farthest && !steep && counts_still(move) &&
-      (last_.is_engaged() || !meets_material(move))) {
+  const bool is_short = length_mm_ < farthest && turnings_.empty();
+  if (is_short && !steep && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
@@ -274,7 +321,7 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     add(0, 1 - part, {});
     if (part > 0) add(1 - part, 1, down);
     since_mm_ = -1;
-  } else if (length_mm_ < farthest) {
+  } else if (is_short) {
     const EngagementLook before = last_;
     // Often in brief is better than seldom.
     is_brief_ = saved_cells_ < look_cells_;
@@ -291,9 +338,12 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     if (last_.is_engaged() || length_mm_ < closest_mm())
       add(0, 1, last_);
     else
-      take_along(2);
+      take_along(0, 1, 2);
+  } else if (upright_) {
+    take_upright(farthest);
   } else {
-    take_along(static_cast<int>(std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes)));
+    take_along(0, 1,
+               static_cast<int>(std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes)));
   }
   flush();
   heights_ = nullptr, points_ = nullptr;
