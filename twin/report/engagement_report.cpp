@@ -14,6 +14,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kDegrees = 180 / kPi;
 /// In whole mm.
 constexpr double kShown_mm = 0.5;
+/// Shares and ways that say nothing.
+constexpr double kLeastShare = 5e-4, kLeast_mm = 0.05;
 
 Json pair_of(double mean, double most) {
   return Json{{"mean", rounded(mean)}, {"most", rounded(most)}};
@@ -37,8 +39,9 @@ void add_sums(Json& out, const EngagementSums& sums) {
 }
 
 std::string air_text(double air_mm, double feed_mm, double air_s) {
-  if (air_mm <= 0 || feed_mm <= 0) return {};
-  return trf("{:.0f} % of its feeds in air, {:.1f} s", 100 * air_mm / feed_mm, air_s);
+  if (feed_mm <= 0 || air_mm < kLeastShare * feed_mm) return {};
+  return trf("{} % of its feeds in air, {}", percent_text(100 * air_mm / feed_mm),
+             span_text(air_s));
 }
 
 Json turned_row(const TurningEngagement& tool) {
@@ -73,7 +76,7 @@ std::string more_text(const EngagementOfTool& tool) {
   std::string out;
   const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
   if (sums.cut_mm > 0) add(trf("{:.0f} % in climb", 100 * sums.climb_mm / sums.cut_mm));
-  if (sums.ramp_mm > 0)
+  if (sums.ramp_mm >= kLeast_mm)
     add(trf("{:.1f} mm down slopes of {:.1f} degrees at most", sums.ramp_mm,
             kDegrees * sums.ramp_most_rad));
   if (sums.cut_s > 0)
@@ -142,8 +145,9 @@ std::string engagement_text(const Engagement& engagement) {
               "diameter; {:.2f} mm deep at most",
               kDegrees * sums.mean(sums.angle_sum), kDegrees * sums.angle_most_rad,
               share * sums.mean(sums.wide_sum_mm2), sums.deep_most_mm);
-    if (sums.full_mm > 0) out += trf("; {:.0f} % in full slots", 100 * sums.full_mm / sums.cut_mm);
-    if (sums.plunge_mm > 0) out += trf("; {:.1f} mm straight down", sums.plunge_mm);
+    if (sums.full_mm > kLeastShare * sums.cut_mm)
+      out += trf("; {} % in full slots", percent_text(100 * sums.full_mm / sums.cut_mm));
+    if (sums.plunge_mm >= kLeast_mm) out += trf("; {:.1f} mm straight down", sums.plunge_mm);
     out += "\n" + more_text(tool);
     label = std::string(10, ' ');
   }

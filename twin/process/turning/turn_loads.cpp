@@ -187,7 +187,7 @@ void TurnLoads::tell(const Tool& tool, Trouble trouble, FindingId id, double lim
   Finding finding = finding_at(id, severity, worst.source, worst.time_s);
   finding.tool = tool.number;
   finding.position_mm = worst.at_mm;
-  finding.text = text + trf(" (for {:.1f} s in all)", worst.seconds);
+  finding.text = text + trf(" (for {} in all)", span_text(worst.seconds));
   log_.add(std::move(finding));
 }
 
