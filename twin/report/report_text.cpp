@@ -126,7 +126,7 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
                 use.chip.speed_m_per_min);
       }
-      if (use.loads) out += loads_text(*use.loads);
+      if (use.loads) out += loads_text(*use.loads, use.chip.is_known());
     }
     out += "\n";
     head = "          ";
