@@ -182,8 +182,8 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
         place_ = {file_, head.line};
         return !feeder_.done();
       }
-      note(head, user_code_text(number_at(payload, 0), number_at(payload, 1),
-                                number_at(payload, 2)));
+      note(head,
+           user_code_text(number_at(payload, 0), number_at(payload, 1), number_at(payload, 2)));
       return true;
     case records::kWait:
       if (head.count != 4) return refuse(tr("an M66 whose numbers do not fit"));

@@ -138,6 +138,7 @@ void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
 void EngagementMeter::Sum::add(const EngagementLook& look, double share) {
   angle += look.angle_rad * share;
   wide += look.wide_mm * share;
+  gaps += look.gaps_mm * share;
   deep += look.deep_mm * share;
   entry += look.entry_rad * share;
   exit += look.exit_rad * share;
@@ -150,6 +151,7 @@ EngagementLook EngagementMeter::Sum::mean(const EngagementLook& like, double sha
   EngagementLook out = like;
   out.angle_rad = angle / shares;
   out.wide_mm = wide / shares;
+  out.gaps_mm = gaps / shares;
   out.deep_mm = deep / shares;
   out.entry_rad = entry / shares;
   out.exit_rad = exit / shares;

@@ -78,7 +78,7 @@ class EngagementMeter {
   };
   /// Of looks, times the parts of the way for which they stand.
   struct Sum {
-    double angle = 0, wide = 0, deep = 0, entry = 0, exit = 0, climb = 0;
+    double angle = 0, wide = 0, gaps = 0, deep = 0, entry = 0, exit = 0, climb = 0;
     double effective = 0, contact = 0;
     void add(const EngagementLook& look, double share);
     EngagementLook mean(const EngagementLook& like, double shares) const;
