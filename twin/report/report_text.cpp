@@ -224,6 +224,10 @@ void add_spindle_load(std::string& out, const LoadReport& load) {
     if (tool.differs_s > 0) out += trf(", {} of it beyond", duration_text(tool.differs_s));
     out += '\n';
   }
+  for (const LoadReport::Unjudged& tool : load.unjudged)
+    out +=
+        trf("          T{} cuts for {} that are not judged: threads, driven tools, or no teeth=N\n",
+            tool.number, duration_text(tool.seconds));
 }
 
 void add_live(std::string& out, const LiveReport& live) {
