@@ -31,6 +31,8 @@ constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
 /// Where air that was seen is asked whether it still is: parts of the radius, and directions.
 constexpr double kProbedRadii[] = {0.2, 0.5, 0.75, 0.95};
 constexpr int kProbedRays = 8;
+/// Depths may be short by that.
+constexpr double kShortOfDepth_mm = 0.05;
 /// Looks along one move at most.
 constexpr double kMostNodes = 4096;
 
@@ -132,7 +134,18 @@ void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
   if (hearer_) hearer_(told);
   const std::uint32_t pass = log_.add(told);
   if (pass != EngagementLog::kNoPass) taken_.pass = pass;
-  if (mean.is_engaged()) taken_.sums.add(mean, way);
+  if (!mean.is_engaged()) return;
+  taken_.sums.add(mean, way);
+  taken_.most_mm3 += most_mm2(mean, way.down_rad) * length_mm;
+}
+
+/// No more stands before the tool, seen along its way.
+double EngagementMeter::most_mm2(const EngagementLook& look, double down_rad) const {
+  const double disc_mm2 = kPi / 4 * look.effective_mm * look.effective_mm;
+  if (look.is_plunge) return disc_mm2;
+  const double wide_mm = look.wide_mm + look.gaps_mm + stock_.cell_mm();
+  return wide_mm * (look.deep_mm + kShortOfDepth_mm) * std::cos(down_rad) +
+         disc_mm2 * std::sin(down_rad);
 }
 
 void EngagementMeter::Sum::add(const EngagementLook& look, double share) {

@@ -55,6 +55,7 @@ class EngagementMeter {
     std::uint32_t pass = EngagementLog::kNoPass;
     bool measured = false;
     EngagementSums sums;
+    double most_mm3 = 0;  ///< what stands before the tool on all of it
   };
   const Taken& take(const Feed& feed);
   /// One that is cut as several, or turns.
@@ -89,6 +90,7 @@ class EngagementMeter {
   void take_along(double from, double to, int places);
   void take_upright(double farthest_mm);
   void tell(const EngagementLook& mean, double from, double to);
+  double most_mm2(const EngagementLook& look, double down_rad) const;
   double closest_mm() const;
   void flush();
   EngagementLook look(double at);
