@@ -61,11 +61,13 @@ Json turned_row(const TurningEngagement& tool) {
 }
 
 std::string turned_text(const TurningEngagement& tool) {
-  std::string out =
-      trf("T{}: {:.2f} mm deep on average, {:.2f} mm at most; {:.3f} mm a turn on average, "
-          "{:.3f} mm at most; chips of {:.3f} mm; {} mm3/s on average",
-          tool.tool, tool.mean(tool.depth_sum_mm2), tool.depth_most_mm, tool.mean(tool.feed_sum),
-          tool.feed_most_mm, tool.mean(tool.chip_sum), load_text(tool.rate_mm3_per_s()));
+  std::string out = trf("T{}: {:.2f} mm deep on average, {:.2f} mm at most", tool.tool,
+                        tool.mean(tool.depth_sum_mm2), tool.depth_most_mm);
+  // Of a spindle that stands there is no feed a turn.
+  if (tool.feed_most_mm > 0)
+    out += trf("; {:.3f} mm a turn on average, {:.3f} mm at most; chips of {:.3f} mm",
+               tool.mean(tool.feed_sum), tool.feed_most_mm, tool.mean(tool.chip_sum));
+  out += trf("; {} mm3/s on average", load_text(tool.rate_mm3_per_s()));
   const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s);
   return out + (air.empty() ? "" : "; " + air) + "\n";
 }

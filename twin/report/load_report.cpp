@@ -50,8 +50,8 @@ std::string loads_text(const ToolLoads& loads, bool is_speed_said) {
                    loads.chip_mm.most(), loads.chip_mm.most_at().line,
                    loads.chip_mm.not_above(0.5));
   if (!is_speed_said && loads.speed_m_per_min.seconds() > 0)
-    out += trf(", cutting speed {:.3g} m/min at most (line {})", loads.speed_m_per_min.most(),
-               loads.speed_m_per_min.most_at().line);
+    out += trf(", cutting speed {} m/min at most (line {})",
+               load_text(loads.speed_m_per_min.most()), loads.speed_m_per_min.most_at().line);
   if (loads.has_forces) {
     out += indent + trf("at most {}", most_text("N", loads.force_n, loads.force_most_n));
     out += ", " + most_text("Nm", loads.torque_nm, loads.torque_most_nm);

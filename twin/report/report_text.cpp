@@ -122,9 +122,9 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
       if (use.chip.is_known()) {
         out +=
             trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} mm at most (line {}), "
-                "cutting speed {:.3g} m/min",
+                "cutting speed {} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
-                use.chip.speed_m_per_min);
+                load_text(use.chip.speed_m_per_min));
       }
       if (use.loads) out += loads_text(*use.loads, use.chip.is_known());
     }
