@@ -179,5 +179,63 @@ TEST(UprightArcTest, IsLookedAtAsIfItWereCutSoFar) {
   EXPECT_GT(looks, 25);
 }
 
+/// Over a hill that is narrower than the tool it has been lower before it comes down again: what
+/// was cut then is not before it. By the same formula as FrontRays, of places in its front over
+/// which the arc has not come yet.
+double angle_by_brute_force(const CutMove& arc, const Cutter& cutter, double top_mm, double at,
+                            bool asks_arc) {
+  const UprightArc upright_arc = *UprightArc::of(arc);
+  const CutMove line = upright_arc.line_at(at, 1);
+  const Vec2 ahead = glm::normalize(Vec2(line.to_mm - line.from_mm));
+  const Vec3 tip = upright_arc.point_at(at);
+  double sum = 0, square = 0;
+  constexpr int kDirections = 60, kRadii = 60;
+  for (int n = 0; n < kDirections; ++n) {
+    const double angle = kPi * ((n + 0.5) / kDirections - 0.5);
+    const Vec2 out = std::cos(angle) * ahead + std::sin(angle) * Vec2(-ahead.y, ahead.x);
+    double high = 0;
+    for (int k = 0; k < kRadii; ++k) {
+      const double inner = cutter.radius_mm() * std::sin(kPi / 2 * k / kRadii);
+      const double outer = cutter.radius_mm() * std::sin(kPi / 2 * (k + 1) / kRadii) * (1 - 1e-9);
+      const double r = 0.5 * (inner + outer), surface = tip.z + cutter.height_mm(r);
+      double before = std::numeric_limits<double>::infinity();
+      for (int i = 0; asks_arc && i < 400; ++i) {
+        const Vec3 past = upright_arc.point_at(at * i / 400);
+        const double distance = glm::length(Vec2(tip) + r * out - Vec2(past));
+        if (distance <= cutter.radius_mm())
+          before = std::min(before, past.z + cutter.height_mm(distance));
+      }
+      if (surface < top_mm && before > surface - 1e-3)
+        high += cutter.height_mm(outer) - cutter.height_mm(inner);
+    }
+    sum += high, square += high * high;
+  }
+  return sum * sum / square * kPi / kDirections;
+}
+
+TEST(UprightArcTest, WhatItHasCutBeforeIsNotBeforeIt) {
+  ZMapOptions options;
+  options.blank = parse_blank("box:0,0,-25:60,40,-3").value();
+  options.cell_mm = 0.1;
+  const std::unique_ptr<ZMap> stock = std::move(ZMap::create(options).value());
+  const Cutter ball = parse_shape("ball:8").value();
+  const CutMove arc = upright({30, 20, -5}, 1, 90, 170, 10);
+  const UprightArc upright_arc = *UprightArc::of(arc);
+  for (const double at : {0.6, 0.75}) {
+    EngagementScan scan;
+    EngagementScan::Look asked;
+    asked.at = 0.5;
+    asked.own = &upright_arc, asked.own_part = at;
+    for (const bool is_brief : {false, true}) {
+      asked.is_brief = is_brief;
+      const EngagementLook found =
+          scan.look_ahead(*stock->present_heights(), ball, upright_arc.line_at(at, 1), asked);
+      const double expected = angle_by_brute_force(arc, ball, -3, at, true);
+      EXPECT_LT(found.angle_rad, angle_by_brute_force(arc, ball, -3, at, false) - 9 * kDegree);
+      EXPECT_NEAR(found.angle_rad, expected, 9 * kDegree) << at << (is_brief ? " in brief" : "");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kerf
