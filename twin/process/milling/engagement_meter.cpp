@@ -66,6 +66,8 @@ void EngagementMeter::mount(int tool, const Cutter& cutter) {
   log_.mount(tool, cutter);
   ways_.mount(cutter, tool);
   diameter_mm_ = 2 * cutter.radius_mm();
+  is_ball_ = is_ball_end(cutter);
+  is_flat_ = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
   lift();
   has_held_ = false;
 }
@@ -101,8 +103,12 @@ EngagementLook EngagementMeter::look(double at) {
   ahead.anticlockwise = anticlockwise_;
   ahead.owners = owners_, ahead.ways = &ways_;
   ahead.is_brief = is_brief_;
-  // Under its centre it never comes back to where it was lower.
-  const bool may_have_cut = upright_ && (!turnings_.empty() || upright_->is_hill(0, 1));
+  // Under its centre it never comes back to where it was lower; and as long as it goes one way
+  // nothing before a rim has been nearer, nor before a ball no larger than the arc.
+  const bool is_behind =
+      upright_ && (is_flat_ || (is_ball_ && upright_->radius_mm() >= 0.5 * diameter_mm_));
+  const bool has_turned = upright_ && !turnings_.empty() && at > turnings_.front();
+  const bool may_have_cut = upright_ && (has_turned || (upright_->is_hill(0, 1) && !is_behind));
   ahead.own = may_have_cut ? &*upright_ : nullptr;
   ahead.own_part = at;
   return scan_.look_ahead(*heights_, *cutter_, move, ahead);

@@ -107,6 +107,7 @@ class EngagementMeter {
   PastWays ways_;
   const PresentHeights* owners_ = nullptr;
   double diameter_mm_ = 0;
+  bool is_ball_ = false, is_flat_ = false;
   bool has_held_ = false;
   CutMove held_;
   EngagementLook last_;

@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kLevelAxis = 1e-9;
 constexpr double kLeastRadius_mm = 1e-3;
-/// Where it turns back so near to an end it does not.
-constexpr double kAtEnd_rad = 1e-6;
+/// Where it turns back so near to an end it does not: a quarter of a circle ends there, to the
+/// digits of I and K, and goes 0.00005 of its radius back at most.
+constexpr double kAtEnd_rad = 0.01;
 /// So little of a way that goes straight up or down is level.
 constexpr double kLevelShare = 0.05;
 

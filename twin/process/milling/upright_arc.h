@@ -26,6 +26,7 @@ class UprightArc {
   static std::optional<UprightArc> of(const CutMove& move);
 
   double sweep_rad() const { return std::abs(sweep_); }
+  double radius_mm() const { return std::min(r0_, r1_); }
   /// Of its way, where it stops going one way, seen from above, and comes back: in order.
   std::vector<double> turning_parts() const;
   /// Not under its centre: so it has been as low before as it is, on its other side.
