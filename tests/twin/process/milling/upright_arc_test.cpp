@@ -179,6 +179,37 @@ TEST(UprightArcTest, IsLookedAtAsIfItWereCutSoFar) {
   EXPECT_GT(looks, 25);
 }
 
+/// As straight ways of 0.05 mm remove it, whose sagittae are 0.00002 mm; heights cut such arcs as
+/// chords that are within 0.001 mm.
+TEST(UprightArcTest, RemovesWhatShortStraightWaysDo) {
+  const Cutter ball = parse_shape("ball:6").value();
+  for (const CutMove& arc :
+       {upright({30, 20, -20}, 18, 90, 150, 30), upright({30, 20, 12}, 16, 90, 215, 325)}) {
+    const auto removed_mm3 = [&](int parts) {
+      ZMapOptions options;
+      options.blank = parse_blank("box:0,0,-25:60,40,0").value();
+      options.cell_mm = 0.1;
+      const std::unique_ptr<ZMap> stock = std::move(ZMap::create(options).value());
+      std::vector<CutMove> moves = {arc};
+      if (parts > 1) moves.clear();
+      for (int k = 0; k < parts && parts > 1; ++k) {
+        CutMove& chord = moves.emplace_back(part_of(arc, double{1} * k / parts, (k + 1.0) / parts));
+        chord.arc.reset();
+      }
+      const double before = stock->remaining_mm3();
+      std::vector<CutReport> reports;
+      stock->cut(ball, moves, reports);
+      stock->finish(reports);
+      return before - stock->remaining_mm3();
+    };
+    const int parts = static_cast<int>(way_length_mm(arc) / 0.05);
+    const double whole = removed_mm3(1);
+    EXPECT_GT(whole, 100);
+    EXPECT_NEAR(whole, removed_mm3(parts), 0.001 * 6 * way_length_mm(arc));
+    EXPECT_NEAR(whole / removed_mm3(parts), 1, 3e-4);
+  }
+}
+
 /// Over a hill that is narrower than the tool it has been lower before it comes down again: what
 /// was cut then is not before it. By the same formula as FrontRays, of places in its front over
 /// which the arc has not come yet.
