@@ -28,6 +28,15 @@ double number_at(const char* payload, std::size_t index) {
   return value;
 }
 
+/// A user M-code with the words that its block has: LinuxCNC hands over -1 for one that it has not.
+std::string user_code_text(double number, double p, double q) {
+  constexpr double kNotGiven = -1;
+  std::string out = fmt::format("M{:g}", number);
+  if (p != kNotGiven) out += fmt::format(" P{:g}", p);
+  if (q != kNotGiven) out += fmt::format(" Q{:g}", q);
+  return out;
+}
+
 /// Numbers that kerf-interp leaves out where they are zero.
 std::uint8_t full_count(CanonicalName name, std::uint8_t count) {
   switch (name) {
@@ -173,8 +182,8 @@ bool RecordReader::take_special(const records::Head& head, const char* payload) 
         place_ = {file_, head.line};
         return !feeder_.done();
       }
-      note(head, fmt::format("M{:g} P{:g} Q{:g}", number_at(payload, 0), number_at(payload, 1),
-                             number_at(payload, 2)));
+      note(head,
+           user_code_text(number_at(payload, 0), number_at(payload, 1), number_at(payload, 2)));
       return true;
     case records::kWait:
       if (head.count != 4) return refuse(tr("an M66 whose numbers do not fit"));

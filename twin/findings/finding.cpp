@@ -10,6 +10,9 @@
 namespace kerf {
 namespace {
 
+/// As deep as the same contact was before.
+constexpr double kSameDepth_mm = 0.005;
+
 /// Two decimals, and never "-0.00".
 std::string coordinate(double value) {
   const double rounded = std::round(value * 100) / 100;
@@ -34,6 +37,7 @@ std::string message_of(const Finding& finding) {
     out += trf(" at X{} Y{} Z{}", coordinate(p.x), coordinate(p.y), coordinate(p.z));
     if (finding.tool) out += trf(" (tool {})", *finding.tool);
   }
+  if (finding.times > 1) out += trf("; {} times, deepest here", finding.times);
   return out;
 }
 
@@ -51,10 +55,32 @@ Diagnostic diagnostic_of(const Finding& finding, const std::vector<std::string>&
 
 FindingLog::Handle FindingLog::add(Finding finding) {
   if (muted_) return kMaxKept;
+  if (const std::optional<Handle> before = repeated(finding)) return repeat(*before, finding);
   ++counts_[static_cast<std::size_t>(finding.severity)];
   if (kept_.size() >= kMaxKept) return kMaxKept;
   kept_.push_back(std::move(finding));
   return kept_.size() - 1;
+}
+
+std::optional<FindingLog::Handle> FindingLog::repeated(const Finding& finding) const {
+  if (!joins_repeats_ || !finding.has_bodies() || finding.bodies[1] == kWorkpieceBody ||
+      finding.id == FindingId::kNearMiss)
+    return std::nullopt;
+  for (Handle handle = kept_.size(); handle-- > 0;) {
+    const Finding& kept = kept_[handle];
+    if (kept.source == finding.source && kept.id == finding.id &&
+        kept.severity == finding.severity && kept.tool == finding.tool &&
+        kept.bodies == finding.bodies)
+      return handle;
+  }
+  return std::nullopt;
+}
+
+FindingLog::Handle FindingLog::repeat(Handle handle, const Finding& finding) {
+  ++kept_[handle].times;
+  events_[handle] = {finding.time_s, finding.position_mm};
+  if (finding.depth_mm) deepen(handle, *finding.depth_mm);
+  return handle;
 }
 
 void FindingLog::raise(Handle handle, Severity severity) {
@@ -83,6 +109,12 @@ void FindingLog::join(const FindingLog& other, const std::vector<std::string>& f
 void FindingLog::deepen(Handle handle, double depth_mm) {
   if (handle >= kept_.size()) return;
   Finding& finding = kept_[handle];
+  const auto event = events_.find(handle);
+  if (event != events_.end()) {
+    if (depth_mm <= finding.depth_mm.value_or(0.0) + kSameDepth_mm) return;
+    finding.time_s = event->second.time_s;
+    finding.position_mm = event->second.position_mm;
+  }
   finding.depth_mm = std::max(finding.depth_mm.value_or(0.0), depth_mm);
 }
 

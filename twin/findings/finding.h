@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -141,6 +142,7 @@ struct Finding {
   /// or a link's name or kWorkpieceBody. Else empty.
   std::array<std::string, 2> bodies{};
   bool has_bodies() const { return !bodies[0].empty(); }
+  std::size_t times = 1;  ///< events that are told as this one (FindingLog::join_repeats)
 };
 
 /// "traverse touches the workpiece, 2.31 mm deep at X12.40 Y3.00 Z-1.20 (tool 3)". `depth_word` is
@@ -158,6 +160,9 @@ class FindingLog {
   using Handle = std::size_t;
 
   Handle add(Finding finding);
+  /// From now on contacts of the same bodies (none of them the workpiece), tool and line are one
+  /// finding, where it is deepest: a loop meets the same clamp each time it comes round.
+  void join_repeats() { joins_repeats_ = true; }
   /// The event goes on, and is now better described so.
   void reword(Handle handle, std::string text) {
     if (handle < kept_.size()) kept_[handle].text = std::move(text);
@@ -194,6 +199,16 @@ class FindingLog {
 
  private:
   std::vector<Finding> kept_;
+  /// The last event of a finding that is told once of several.
+  struct Event {
+    std::optional<double> time_s;
+    std::optional<Vec3> position_mm;
+  };
+  std::optional<Handle> repeated(const Finding& finding) const;
+  Handle repeat(Handle handle, const Finding& finding);
+
+  std::map<Handle, Event> events_;
+  bool joins_repeats_ = false;
   std::uint64_t counts_[3] = {0, 0, 0};
   bool muted_ = false;
 };

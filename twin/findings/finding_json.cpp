@@ -32,6 +32,7 @@ Json finding_json(const Finding& finding, const std::vector<std::string>& files)
   item["tool"] = finding.tool ? Json(*finding.tool) : Json(nullptr);
   item["depth_mm"] = number_or_null(finding.depth_mm);
   item["bodies"] = finding.has_bodies() ? Json(finding.bodies) : Json(nullptr);
+  if (finding.times > 1) item["times"] = finding.times;
   item["message"] = message_of(finding);
   return item;
 }

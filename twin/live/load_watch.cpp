@@ -149,6 +149,8 @@ void LoadWatch::on_load(const CutLoad& load) {
   const double end_s = load.start_s + load.seconds;
   heard_s_ = std::max(heard_s_, end_s);
   const bool is_known = (!load.is_engaged || load.has_forces()) && load.seconds <= kLongStep_s;
+  if (wish_.material && load.is_engaged && !load.has_forces())
+    known_.unjudged_s[load.tool] += load.seconds;
   const double per_kw = 1000 * std::max(0.0, per_power_w()),
                per_nm = std::max(0.0, per_torque_nm());
   const ValueRange power = load.of(LoadKind::kPower).times(per_kw);
@@ -376,6 +378,8 @@ std::optional<LoadReport> LoadWatch::report() const {
     out.tools.push_back({number, tool.judged_s, tool.differs_s, tool.measured_s / tool.judged_s,
                          tool.low_s / tool.judged_s, tool.high_s / tool.judged_s});
   }
+  for (const auto& [number, seconds] : known_.unjudged_s)
+    if (seconds >= kLeastUnjudged_s) out.unjudged.push_back({number, seconds});
   return out;
 }
 

@@ -43,6 +43,8 @@ class LoadWatch final : public LoadListener {
   static constexpr double kSettle_s = 3, kLasting_s = 5, kLearn_s = 20;
   static constexpr double kLeastEfficiency = 0.75;
   static constexpr double kLeastOfUsual = 0.5, kMostOfUsual = 1.4;
+  /// Cuts that nobody knows the load of are told from so long on.
+  static constexpr double kLeastUnjudged_s = 1;
   /// Bins are judged so much later: a number that stands still is known as that by then.
   static constexpr double kDelay_s = 4;
 
@@ -93,6 +95,7 @@ class LoadWatch final : public LoadListener {
     double longest_still_s = 0;  ///< that was over again
     IdleLoads idle;
     std::map<int, Tool> tools;
+    std::map<int, double> unjudged_s;  ///< by the tool
     bool still_told = false;
   };
 

@@ -65,7 +65,7 @@ double CutLimits::outline_mm2(const EngagementLook& look) const {
 double CutLimits::section_mm2(const EngagementLook& look) const {
   // No more is cut than as wide and as high as that, and of what is not flat no more than the
   // outline has between the angles.
-  const double all_mm2 = look.wide_mm * look.deep_mm;
+  const double all_mm2 = (look.wide_mm + look.gaps_mm) * look.deep_mm;
   if (!look.is_plunge && is_rounded_) return std::min(all_mm2, outline_mm2(look));
   if (!look.is_plunge) return all_mm2;
   const double wide_mm = std::min(2 * radius_mm_, look.wide_mm + kDiscStep * 2 * radius_mm_);

@@ -18,9 +18,9 @@ namespace kerf {
 ///         way ^             `angle_rad`: of its edge that is in material, seen along the axis:
 ///       ______|_____        0 .. pi for a tool that goes sideways, 2 pi where it goes straight
 ///      |/////.-'-.  |       down.
-///      |////(  |  ) |       `wide_mm`: how wide that is across the way (ae, radial width of cut).
-///      |/////`-.-'  |       `deep_mm`: its greatest height (ap, axial depth of cut), at least
-///      |///| wide|  |       what one move removes there at once.
+///      |////(  |  ) |       `wide_mm`: how wide that is across the way (ae, radial width of cut),
+///      |/////`-.-'  |       less gaps in it. `deep_mm`: its greatest height (ap, axial depth of
+///      |///| wide|  |       cut), at least what one move removes there at once.
 ///
 /// A tooth comes round in front of the tool from phi = 0, square to the way, by pi / 2, straight
 /// ahead, to pi. A spindle that runs clockwise (M3; one that stands counts as such) has 0 on the
@@ -28,6 +28,7 @@ namespace kerf {
 /// chips begin with nothing), what ends at pi in climb (down).
 struct EngagementLook {
   double angle_rad = 0, wide_mm = 0, deep_mm = 0;
+  double gaps_mm = 0;  ///< across the way, between spans of material: not in wide_mm
   bool is_plunge = false;
   /// The tool's middle goes down into material: straight, or along a slope.
   bool cuts_centre = false;

@@ -133,7 +133,8 @@ void EngagementLog::take_back_air(const EngagedWay& way) {
   unmeasured_mm_ += way.length_mm;
 }
 
-void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds) {
+void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds,
+                                double most_mm3) {
   if (pass == kNoPass) {
     unmeasured_mm3_ += mm3;
     return;
@@ -141,7 +142,8 @@ void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, d
   EngagementSums& sums = passes_[pass].sums;
   sums.removed_mm3 += mm3;
   if (window_.pass != pass) window_ = {pass, 0, 0, 0};
-  window_.mm3 += mm3, window_.mm += way_mm, window_.seconds += seconds;
+  window_.mm3 += std::min(mm3, most_mm3);
+  window_.mm += way_mm, window_.seconds += seconds;
   const double least_mm = kWindowOfDiameter * tools_[tool_of_pass_[pass]].diameter_mm;
   if (window_.mm < least_mm || window_.seconds <= 0) return;
   sums.rate_most_mm3_per_s = std::max(sums.rate_most_mm3_per_s, window_.mm3 / window_.seconds);

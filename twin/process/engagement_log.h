@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,8 +67,11 @@ class EngagementLog {
   /// A part of a move of the present tool, told as one in the air, has removed material.
   void take_back_air(const EngagedWay& way);
   /// What a move of that pass has removed, on so much of its way and time as it was in material
-  /// (EngagementSums::in_material_mm(), cut_s).
-  void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds);
+  /// (EngagementSums::in_material_mm(), cut_s). `most_mm3`: what stood before the tool there;
+  /// heights count what its front takes on the way straight on with a later move, or with the last
+  /// of them all that the front holds, and a rate is none of that.
+  void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds,
+                   double most_mm3 = std::numeric_limits<double>::infinity());
 
   /// What a tool has left, when all is cut.
   void set_scallops(int tool, const std::string& shape, const Scallops& scallops);

@@ -14,6 +14,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kDegrees = 180 / kPi;
 /// In whole mm.
 constexpr double kShown_mm = 0.5;
+/// Shares and ways that say nothing.
+constexpr double kLeastShare = 5e-4, kLeast_mm = 0.05;
 
 Json pair_of(double mean, double most) {
   return Json{{"mean", rounded(mean)}, {"most", rounded(most)}};
@@ -37,8 +39,9 @@ void add_sums(Json& out, const EngagementSums& sums) {
 }
 
 std::string air_text(double air_mm, double feed_mm, double air_s) {
-  if (air_mm <= 0 || feed_mm <= 0) return {};
-  return trf("{:.0f} % of its feeds in air, {:.1f} s", 100 * air_mm / feed_mm, air_s);
+  if (feed_mm <= 0 || air_mm < kLeastShare * feed_mm) return {};
+  return trf("{} % of its feeds in air, {}", percent_text(100 * air_mm / feed_mm),
+             span_text(air_s));
 }
 
 Json turned_row(const TurningEngagement& tool) {
@@ -58,11 +61,13 @@ Json turned_row(const TurningEngagement& tool) {
 }
 
 std::string turned_text(const TurningEngagement& tool) {
-  std::string out =
-      trf("T{}: {:.2f} mm deep on average, {:.2f} mm at most; {:.3f} mm a turn on average, "
-          "{:.3f} mm at most; chips of {:.3f} mm; {} mm3/s on average",
-          tool.tool, tool.mean(tool.depth_sum_mm2), tool.depth_most_mm, tool.mean(tool.feed_sum),
-          tool.feed_most_mm, tool.mean(tool.chip_sum), load_text(tool.rate_mm3_per_s()));
+  std::string out = trf("T{}: {:.2f} mm deep on average, {:.2f} mm at most", tool.tool,
+                        tool.mean(tool.depth_sum_mm2), tool.depth_most_mm);
+  // Of a spindle that stands there is no feed a turn.
+  if (tool.feed_most_mm > 0)
+    out += trf("; {:.3f} mm a turn on average, {:.3f} mm at most; chips of {:.3f} mm",
+               tool.mean(tool.feed_sum), tool.feed_most_mm, tool.mean(tool.chip_sum));
+  out += trf("; {} mm3/s on average", load_text(tool.rate_mm3_per_s()));
   const std::string air = air_text(tool.air_mm, tool.feed_mm, tool.air_s);
   return out + (air.empty() ? "" : "; " + air) + "\n";
 }
@@ -73,7 +78,7 @@ std::string more_text(const EngagementOfTool& tool) {
   std::string out;
   const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
   if (sums.cut_mm > 0) add(trf("{:.0f} % in climb", 100 * sums.climb_mm / sums.cut_mm));
-  if (sums.ramp_mm > 0)
+  if (sums.ramp_mm >= kLeast_mm)
     add(trf("{:.1f} mm down slopes of {:.1f} degrees at most", sums.ramp_mm,
             kDegrees * sums.ramp_most_rad));
   if (sums.cut_s > 0)
@@ -142,8 +147,9 @@ std::string engagement_text(const Engagement& engagement) {
               "diameter; {:.2f} mm deep at most",
               kDegrees * sums.mean(sums.angle_sum), kDegrees * sums.angle_most_rad,
               share * sums.mean(sums.wide_sum_mm2), sums.deep_most_mm);
-    if (sums.full_mm > 0) out += trf("; {:.0f} % in full slots", 100 * sums.full_mm / sums.cut_mm);
-    if (sums.plunge_mm > 0) out += trf("; {:.1f} mm straight down", sums.plunge_mm);
+    if (sums.full_mm > kLeastShare * sums.cut_mm)
+      out += trf("; {} % in full slots", percent_text(100 * sums.full_mm / sums.cut_mm));
+    if (sums.plunge_mm >= kLeast_mm) out += trf("; {:.1f} mm straight down", sums.plunge_mm);
     out += "\n" + more_text(tool);
     label = std::string(10, ' ');
   }
@@ -155,7 +161,7 @@ std::string engagement_text(const Engagement& engagement) {
   if (none && engagement.unmeasured_mm <= 0) out += label + tr("no tool was in material\n");
   if (engagement.unmeasured_mm >= kShown_mm)
     out += label + trf("not measured: {:.0f} mm of undercutting tools, of tools that turn about on "
-                       "their way, of threads, of arcs in G18 and G19 of a mill, in a model that "
+                       "their way, of threads, of arcs of tilted tools, in a model that "
                        "cannot be asked, or where no look has seen what was removed\n",
                        engagement.unmeasured_mm);
   return out;

@@ -43,6 +43,12 @@ struct LoadReport {
     double low = 0, high = 0;  ///< idle load and cut together
   };
   std::vector<Tool> tools;
+  /// How long tools have cut what nobody knows the load of: threads, driven tools, no teeth=N.
+  struct Unjudged {
+    int number = 0;
+    double seconds = 0;
+  };
+  std::vector<Unjudged> unjudged;
 };
 
 }  // namespace kerf

@@ -43,12 +43,15 @@ void add_loads(Json& out, const ToolLoads& loads) {
   }
 }
 
-std::string loads_text(const ToolLoads& loads) {
+std::string loads_text(const ToolLoads& loads, bool is_speed_said) {
   const std::string indent = "\n              ";
   std::string out =
       indent + trf("chips {:.2g} mm thick at most (line {}), {:.2g} mm half of the time",
                    loads.chip_mm.most(), loads.chip_mm.most_at().line,
                    loads.chip_mm.not_above(0.5));
+  if (!is_speed_said && loads.speed_m_per_min.seconds() > 0)
+    out += trf(", cutting speed {} m/min at most (line {})",
+               load_text(loads.speed_m_per_min.most()), loads.speed_m_per_min.most_at().line);
   if (loads.has_forces) {
     out += indent + trf("at most {}", most_text("N", loads.force_n, loads.force_most_n));
     out += ", " + most_text("Nm", loads.torque_nm, loads.torque_most_nm);

@@ -15,8 +15,8 @@ namespace kerf {
 /// NAME_range_UNIT, low and high of the greatest.
 void add_loads(nlohmann::ordered_json& out, const ToolLoads& loads);
 
-/// Lines behind those of the tool.
-std::string loads_text(const ToolLoads& loads);
+/// Lines behind those of the tool. `is_speed_said`: what it cuts at is told in these.
+std::string loads_text(const ToolLoads& loads, bool is_speed_said);
 
 /// name, source, kc11_n_per_mm2, mc.
 nlohmann::ordered_json material_json(const Material& material);

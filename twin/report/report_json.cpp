@@ -195,6 +195,9 @@ Json load_json(const LoadReport& load) {
                             {"low", rounded(tool.low)},
                             {"high", rounded(tool.high)}});
   }
+  out["unjudged"] = Json::array();
+  for (const LoadReport::Unjudged& tool : load.unjudged)
+    out["unjudged"].push_back({{"number", tool.number}, {"cut_s", rounded(tool.seconds)}});
   return out;
 }
 

@@ -122,11 +122,11 @@ void add_tools(std::string& out, const std::vector<ToolUse>& tools) {
       if (use.chip.is_known()) {
         out +=
             trf("\n              {} teeth: feed per tooth {:.3g} mm, {:.3g} mm at most (line {}), "
-                "cutting speed {:.3g} m/min",
+                "cutting speed {} m/min",
                 *use.teeth, use.chip.mean_mm(), use.chip.most_mm, use.chip.most_at.line,
-                use.chip.speed_m_per_min);
+                load_text(use.chip.speed_m_per_min));
       }
-      if (use.loads) out += loads_text(*use.loads);
+      if (use.loads) out += loads_text(*use.loads, use.chip.is_known());
     }
     out += "\n";
     head = "          ";
@@ -224,6 +224,10 @@ void add_spindle_load(std::string& out, const LoadReport& load) {
     if (tool.differs_s > 0) out += trf(", {} of it beyond", duration_text(tool.differs_s));
     out += '\n';
   }
+  for (const LoadReport::Unjudged& tool : load.unjudged)
+    out +=
+        trf("          T{} cuts for {} that are not judged: threads, driven tools, or no teeth=N\n",
+            tool.number, duration_text(tool.seconds));
 }
 
 void add_live(std::string& out, const LiveReport& live) {

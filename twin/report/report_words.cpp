@@ -6,12 +6,13 @@
 #include <cstdint>
 
 #include "base/translate.h"
+#include "twin/job/load_text.h"
 
 namespace kerf {
 
 std::string duration_text(double seconds) {
   const auto whole = static_cast<long long>(std::llround(seconds));
-  if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 60) return span_text(seconds);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
 }

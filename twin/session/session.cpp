@@ -232,6 +232,7 @@ std::optional<Outcome> Session::cut_and_report(std::stop_token stop, Diagnostics
   const ProcessPointer process = process_of(options_, front_);
   TimelineOptions timing = options_.timeline;
   timing.holds = process->holds();
+  report_.findings.join_repeats();
   CutStage stage(*front_.stock.stock, resolver, report_.findings, timing, *process);
   stage.check_by(checks_of(options_, front_));
   stage.stop_by(stop);

@@ -51,5 +51,62 @@ TEST(FindingLog, CountsAllButKeepsABoundedNumber) {
   EXPECT_EQ(log.total(), FindingLog::kMaxKept + 7);
 }
 
+Finding contact(double x_mm, double depth_mm) {
+  Finding f = rapid();
+  f.id = FindingId::kFixtureContact;
+  f.text = "cutter touches fixture 'clamp'";
+  f.position_mm = Vec3(x_mm, 3, -1);
+  f.time_s = x_mm;
+  f.depth_mm = depth_mm;
+  f.bodies = {"cutter", "clamp"};
+  return f;
+}
+
+TEST(FindingLog, ALoopThatMeetsTheSameClampIsOneFindingWhereItIsDeepest) {
+  FindingLog log;
+  log.join_repeats();
+  log.deepen(log.add(contact(1, 0.5)), 1);
+  log.deepen(log.add(contact(2, 0.5)), 2);
+  log.deepen(log.add(contact(3, 0.5)), 2);
+  log.deepen(log.add(contact(4, 0.5)), 1.5);
+  ASSERT_EQ(log.kept().size(), 1u);
+  EXPECT_EQ(log.count(Severity::kError), 1u);
+  EXPECT_EQ(log.kept()[0].times, 4u);
+  EXPECT_EQ(*log.kept()[0].time_s, 2);
+  EXPECT_EQ(message_of(log.kept()[0]),
+            "cutter touches fixture 'clamp', 2.00 mm deep at X2.00 Y3.00 Z-1.00 (tool 3); 4 times, "
+            "deepest here");
+  for (std::size_t n = 0; n < 3 * FindingLog::kMaxKept; ++n) log.add(contact(1, 1));
+  EXPECT_EQ(log.total(), 1u);
+}
+
+TEST(FindingLog, WhatDiffersIsAFindingOfItsOwn) {
+  FindingLog log;
+  log.join_repeats();
+  log.add(contact(1, 1));
+  Finding other = contact(1, 1);
+  other.bodies[0] = "holder";
+  log.add(other);
+  other = contact(1, 1);
+  other.bodies[1] = "vise";
+  log.add(other);
+  other = contact(1, 1);
+  other.bodies[1] = kWorkpieceBody;
+  log.add(other), log.add(other);
+  other = contact(1, 1);
+  other.tool = 4;
+  log.add(other);
+  other = contact(1, 1);
+  other.source.line = 119;
+  log.add(other);
+  EXPECT_EQ(log.total(), 7u);
+}
+
+TEST(FindingLog, BesideAMachineEachContactIsTold) {
+  FindingLog log;
+  log.add(contact(1, 1)), log.add(contact(1, 1));
+  EXPECT_EQ(log.total(), 2u);
+}
+
 }  // namespace
 }  // namespace kerf

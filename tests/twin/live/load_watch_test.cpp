@@ -315,7 +315,17 @@ TEST(LoadWatch, CutsThatNobodyKnowsAreNotJudged) {
   Shop shop;
   shop.run({{10, 0}, {30, 1, 0, 8000, 1, false}, {30, 1, 900, 8000, 1, false}});
   EXPECT_EQ(shop.told(), 0U);
-  EXPECT_TRUE(shop.watch.report()->tools.empty());
+  const LoadReport report = shop.watch.report().value();
+  EXPECT_TRUE(report.tools.empty());
+  ASSERT_EQ(report.unjudged.size(), 1U) << "but it is said for how long";
+  EXPECT_EQ(report.unjudged[0].number, 1);
+  EXPECT_NEAR(report.unjudged[0].seconds, 60, 0.1);
+}
+
+TEST(LoadWatch, NobodyIsToldOfAnInstantThatIsNotKnown) {
+  Shop shop;
+  shop.run({{10, 0}, {30, 900}, {0.5, 900, 1, 8000, 1, false}, {10, 900}});
+  EXPECT_TRUE(shop.watch.report()->unjudged.empty());
 }
 
 /// What should take less than the idle load trembles cannot be seen.

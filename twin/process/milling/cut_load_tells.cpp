@@ -16,6 +16,8 @@ namespace {
 /// Chips at the ends of cuts are thin in any program.
 constexpr double kThinShare = 0.5;
 /// Below that nobody minds.
+/// How a tool enters a cut, or comes round a corner, is no way to mill.
+constexpr double kLeastWay_s = 0.1, kLeastWayShare = 0.05;
 constexpr double kLeastAir_s = 5, kLeastAirShare = 0.1, kLeastAirPlace_s = 0.5;
 
 std::string range_text(const ValueRange& range, const char* unit) {
@@ -43,7 +45,7 @@ void CutLoads::tell(const Tool& tool) {
     return range.low > limit ? Severity::kWarning : Severity::kNote;
   };
   const auto for_so_long = [&](Trouble trouble) {
-    return trf(" (for {:.1f} s in all)", worst[trouble].seconds);
+    return trf(" (for {} in all)", span_text(worst[trouble].seconds));
   };
   if (there(kChip)) {
     tell(tool, kChip, FindingId::kChipLoadHigh, Severity::kWarning,
@@ -100,7 +102,8 @@ void CutLoads::tell(const Tool& tool) {
              wish_.most_bend_mm) +
              for_so_long(kBend));
   }
-  if (there(kUp)) {
+  const double up_s = worst[kUp].seconds;
+  if (there(kUp) && (up_s >= kLeastWay_s || up_s >= kLeastWayShare * tool.cut_s)) {
     tell(tool, kUp, FindingId::kConventional, Severity::kWarning,
          tr("conventional milling, where climb milling is wanted") + for_so_long(kUp));
   }

@@ -191,11 +191,14 @@ void CutLoads::take_cut(const Part& part, double feed_mm) {
   // wide and as high as that.
   const double section_mm2 = tool_->profile->sum_to(cut.deep_mm).half_mm2 *
                              (std::cos(cut.entry_rad) - std::cos(cut.exit_rad));
-  const double share =
-      section_mm2 > 0 ? std::min(1.0, look.wide_mm * look.deep_mm / section_mm2) : 1;
+  const auto share_of = [&](double wide_mm) {
+    return section_mm2 > 0 ? std::min(1.0, wide_mm * look.deep_mm / section_mm2) : 1;
+  };
+  // A gap takes nothing of the most that a tooth takes beside it.
+  const double share = share_of(look.wide_mm + look.gaps_mm), mean = share_of(look.wide_mm);
   const ValueRange force_n = load.force_n.times(share);
-  add_forces(part, force_n, load.torque_nm.times(share), load.torque_mean_nm.times(share),
-             load.power_w.times(share));
+  add_forces(part, force_n, load.torque_nm.times(share), load.torque_mean_nm.times(mean),
+             load.power_w.times(mean));
   add_bend(part, force_n, load.at_wall_n.times(share));
 }
 

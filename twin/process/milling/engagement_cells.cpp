@@ -137,7 +137,11 @@ void EngagementScan::take_batch(const Station& station, const CellRow& row, Cell
     if (own_until_ > 0) cells.height[n] = behind_itself(middle, cells.height[n]);
   }
   for (int n = 0; n < cells.count; ++n) {
-    cells.depth[n] = cells.height[n] - cells.depth[n];
+    const double surface = cells.depth[n];
+    cells.depth[n] = cells.height[n] - surface;
+    if (cells.depth[n] > 0 && own_ != nullptr &&
+        is_cut_by_own(station.center + Vec2(cells.x[n], cells.y[n]), surface))
+      continue;
     if (cells.depth[n] > 0) cells.move(n, kept++);
   }
   cells.count = kept;

@@ -27,6 +27,8 @@ constexpr double kTwistCells = 0.05;
 constexpr double kAhead = 1.0 / 200, kMargin = kAhead / 100, kLeastMargin_mm = 4e-5;
 /// Of what is not flat, so many cells.
 constexpr double kAheadCells = 0.1;
+/// What an arc that stands upright has cut before is lower than where it is now by more.
+constexpr double kLowerBefore_mm = 1e-3;
 constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
@@ -84,7 +86,7 @@ double EngagementScan::material_at(const Station& station, const Vec2& point, do
       lift(at_rim ? least_radius * (1 - 1e-9) : std::min(glm::length(arm), radius_));
   if (height <= meets || ahead < -cell_) return 0;
   height = behind_itself(middle, behind_held(middle, height));
-  return height > meets ? height - lowest : 0;
+  return height > meets && !is_cut_by_own(middle, meets) ? height - lowest : 0;
 }
 
 /// What stands right before the rim. Near the sides the rim is steep: as far ahead, and as far
@@ -133,12 +135,20 @@ double EngagementScan::behind_own(const Vec2& point, double height) const {
   return std::min({height, left_by(0), left_by(own_until_)});
 }
 
+/// The arc has come over the point lower than that.
+bool EngagementScan::is_cut_by_own(const Vec2& point, double height) const {
+  if (own_ == nullptr) return false;
+  const auto lift = [this](double mm) { return lift_of(mm); };
+  return own_->lowest_over(point, 0, own_part_, radius_, lift) < height - kLowerBefore_mm;
+}
+
 /// A move that has made one of the low cells about there has cut the point, too; or the one that is
 /// held back. Cells that no known move has made are as
 /// they are.
 bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) const {
   const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
   if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
+  if (is_cut_by_own(point, z)) return true;
   const auto is_low = [&](int x, int y) {
     return static_cast<double>(heights_->height(x, y)) <= z + kThinnestFront_mm;
   };
@@ -182,7 +192,7 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
   }
   const double least = z + kThinnestFront_mm;
   if (highest <= least) return 0;
-  const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0;
+  const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0 || own_ != nullptr;
   if (differs && is_cut_there(point, z, i, j)) return 0;
   const auto own = static_cast<double>(heights_->height(i, j));
   const double stands = own > least ? own : highest;
@@ -309,7 +319,10 @@ FrontContact EngagementScan::contact_at(const Station& station, double angle) {
 double EngagementScan::over_ray(const Ray& ray, double radius) const {
   // Up a slope what it leaves beside it, and nearer to its tip, it has cut from farther back.
   if (ray.slope > 0 && slope_of(radius) * ray.ahead <= ray.slope) return -kThinnestFilm_mm;
-  return over_surface(*ray.station, ray.station->center + radius * ray.out) - kThinnestFilm_mm;
+  const Vec2 point = ray.station->center + radius * ray.out;
+  const double depth = over_surface(*ray.station, point) - kThinnestFilm_mm;
+  if (own_ == nullptr || depth <= 0) return depth;
+  return is_cut_by_own(point, ray.station->tip_z + lift_of(radius)) ? -kThinnestFilm_mm : depth;
 }
 
 EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle) const {
@@ -513,6 +526,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   set_held(asked.held);
   const bool knows_walls = asked.owners != nullptr && asked.ways != nullptr;
   own_until_ = 0;
+  own_ = asked.own, own_part_ = asked.own_part;
   owners_ = knows_walls ? asked.owners : nullptr, ways_ = asked.ways;
   engaged_ = engaged_radius();
   if (engaged_ <= 0) return {};

@@ -31,6 +31,8 @@ constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
 /// Where air that was seen is asked whether it still is: parts of the radius, and directions.
 constexpr double kProbedRadii[] = {0.2, 0.5, 0.75, 0.95};
 constexpr int kProbedRays = 8;
+/// Depths may be short by that.
+constexpr double kShortOfDepth_mm = 0.05;
 /// Looks along one move at most.
 constexpr double kMostNodes = 4096;
 
@@ -64,6 +66,8 @@ void EngagementMeter::mount(int tool, const Cutter& cutter) {
   log_.mount(tool, cutter);
   ways_.mount(cutter, tool);
   diameter_mm_ = 2 * cutter.radius_mm();
+  is_ball_ = is_ball_end(cutter);
+  is_flat_ = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
   lift();
   has_held_ = false;
 }
@@ -88,30 +92,72 @@ bool EngagementMeter::is_same(const EngagementLook& a, const EngagementLook& b) 
 }
 
 EngagementLook EngagementMeter::look(double at) {
+  const double part = upright_ ? 0.5 : at;
+  const CutMove& move = upright_ ? (line_ = upright_->line_at(at, until_)) : *move_;
   if (points_ != nullptr)
-    return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, *move_,
-                       {at, anticlockwise_});
-  const EngagementScan::Look ahead{
-      at, has_held_ ? &held_ : nullptr, anticlockwise_, owners_, &ways_, is_brief_};
-  return scan_.look_ahead(*heights_, *cutter_, *move_, ahead);
+    return front_.look(*points_, stock_.bounds_mm(), stock_.cell_mm(), *cutter_, move,
+                       {part, anticlockwise_});
+  EngagementScan::Look ahead;
+  ahead.at = part;
+  ahead.held = has_held_ ? &held_ : nullptr;
+  ahead.anticlockwise = anticlockwise_;
+  ahead.owners = owners_, ahead.ways = &ways_;
+  ahead.is_brief = is_brief_;
+  // Under its centre it never comes back to where it was lower; and as long as it goes one way
+  // nothing before a rim has been nearer, nor before a ball no larger than the arc.
+  const bool is_behind =
+      upright_ && (is_flat_ || (is_ball_ && upright_->radius_mm() >= 0.5 * diameter_mm_));
+  const bool has_turned = upright_ && !turnings_.empty() && at > turnings_.front();
+  const bool may_have_cut = upright_ && (has_turned || (upright_->is_hill(0, 1) && !is_behind));
+  ahead.own = may_have_cut ? &*upright_ : nullptr;
+  ahead.own_part = at;
+  return scan_.look_ahead(*heights_, *cutter_, move, ahead);
 }
 
 void EngagementMeter::flush() {
   if (to_ <= from_) return;
   const EngagementLook mean = sum_.mean(first_, to_ - from_);
-  const CutMove part = part_of(*move_, from_, to_);
-  const EngagedWay way{(to_ - from_) * length_mm_, (to_ - from_) * duration_s_, down_rad_};
-  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from_ * duration_s_};
+  if (!upright_ || !mean.is_engaged()) {
+    tell(mean, from_, to_);
+  } else {
+    // How steep it goes differs along it.
+    const double turn = (to_ - from_) * upright_->sweep_rad();
+    const int parts = std::max(1, static_cast<int>(std::ceil(turn / kUprightPart_rad)));
+    for (int k = 0; k < parts; ++k) {
+      const double step = (to_ - from_) / parts;
+      tell(mean, from_ + k * step, k + 1 == parts ? to_ : from_ + (k + 1) * step);
+    }
+  }
+  from_ = to_;
+}
+
+void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
+  const CutMove part = part_of(*move_, from, to);
+  const double length_mm = (to - from) * length_mm_;
+  const double down_rad = upright_ ? down_of(part, length_mm) : down_rad_;
+  const EngagedWay way{length_mm, (to - from) * duration_s_, down_rad};
+  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from * duration_s_};
   if (hearer_) hearer_(told);
   const std::uint32_t pass = log_.add(told);
   if (pass != EngagementLog::kNoPass) taken_.pass = pass;
-  if (mean.is_engaged()) taken_.sums.add(mean, way);
-  from_ = to_;
+  if (!mean.is_engaged()) return;
+  taken_.sums.add(mean, way);
+  taken_.most_mm3 += most_mm2(mean, way.down_rad) * length_mm;
+}
+
+/// No more stands before the tool, seen along its way.
+double EngagementMeter::most_mm2(const EngagementLook& look, double down_rad) const {
+  const double disc_mm2 = kPi / 4 * look.effective_mm * look.effective_mm;
+  if (look.is_plunge) return disc_mm2;
+  const double wide_mm = look.wide_mm + look.gaps_mm + stock_.cell_mm();
+  return wide_mm * (look.deep_mm + kShortOfDepth_mm) * std::cos(down_rad) +
+         disc_mm2 * std::sin(down_rad);
 }
 
 void EngagementMeter::Sum::add(const EngagementLook& look, double share) {
   angle += look.angle_rad * share;
   wide += look.wide_mm * share;
+  gaps += look.gaps_mm * share;
   deep += look.deep_mm * share;
   entry += look.entry_rad * share;
   exit += look.exit_rad * share;
@@ -124,6 +170,7 @@ EngagementLook EngagementMeter::Sum::mean(const EngagementLook& like, double sha
   EngagementLook out = like;
   out.angle_rad = angle / shares;
   out.wide_mm = wide / shares;
+  out.gaps_mm = gaps / shares;
   out.deep_mm = deep / shares;
   out.entry_rad = entry / shares;
   out.exit_rad = exit / shares;
@@ -204,27 +251,45 @@ bool EngagementMeter::find_material(std::optional<HeightGrid>& heights) {
   const StockModel& model = stock_.bare();
   if (const auto* const present = dynamic_cast<const PresentHeights*>(&model)) {
     heights = present->present_heights();
-    if (!heights || !EngagementScan::takes(*cutter_, *move_)) return false;
+    const bool takes = upright_ ? EngagementScan::takes(*cutter_, upright_->line_at(0, 1))
+                                : EngagementScan::takes(*cutter_, *move_);
+    if (!heights || !takes) return false;
     heights_ = &*heights;
     owners_ = model.keeps_cut_ids() ? present : nullptr;
     return true;
   }
   points_ = dynamic_cast<const SolidPoints*>(&model);
-  return points_ != nullptr && SolidFront::takes(*cutter_, *move_);
+  if (points_ == nullptr) return false;
+  return upright_ ? SolidFront::takes(*cutter_, upright_->line_at(0, 1))
+                  : SolidFront::takes(*cutter_, *move_);
 }
 
 /// By looks at so many places after its begin, and where these differ between them.
-void EngagementMeter::take_along(int places) {
-  const double last_at = 1 - std::min(kLeastPart, kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
-  Node before{0, look(0)};
+void EngagementMeter::take_along(double from, double to, int places) {
+  const double last_at =
+      to - std::min(kLeastPart * (to - from), kBeforeEnd_cells * stock_.cell_mm() / length_mm_);
+  Node before{from, look(from)};
   for (int k = 1; k <= places; ++k) {
-    Node node{k == places ? 1 : static_cast<double>(k) / places, {}};
+    Node node{k == places ? to : from + (to - from) * k / places, {}};
     node.look = look(std::min(node.at, last_at));
     refine(before, node, kMostHalvings);
     before = node;
   }
   last_ = before.look;
   since_mm_ = -1;
+}
+
+/// From one place to the next where it turns back, seen from above.
+void EngagementMeter::take_upright(double farthest_mm) {
+  double from = 0;
+  turnings_.push_back(1);
+  for (const double to : turnings_) {
+    until_ = to;
+    const double apart = std::max((to - from) * length_mm_ / farthest_mm,
+                                  (to - from) * upright_->sweep_rad() / kUprightTurn_rad);
+    take_along(from, to, static_cast<int>(std::clamp(std::ceil(apart), 1.0, kMostNodes)));
+    from = to;
+  }
 }
 
 double EngagementMeter::closest_mm() const {
@@ -239,6 +304,9 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   anticlockwise_ = feed.anticlockwise;
   length_mm_ = way_length_mm(move);
   down_rad_ = down_of(move, length_mm_);
+  upright_ = UprightArc::of(move);
+  turnings_ = upright_ ? upright_->turning_parts() : std::vector<double>{};
+  until_ = 1;
   taken_ = {};
   taken_.measured = true;
   if (length_mm_ <= 0) return taken_;
@@ -252,8 +320,8 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   const bool steep = is_steep(move);
   const double farthest =
       std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  if (length_mm_ < farthest && !steep && counts_still(move) &&
-      (last_.is_engaged() || !meets_material(move))) {
+  const bool is_short = length_mm_ < farthest && turnings_.empty();
+  if (is_short && !steep && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
@@ -274,7 +342,7 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     add(0, 1 - part, {});
     if (part > 0) add(1 - part, 1, down);
     since_mm_ = -1;
-  } else if (length_mm_ < farthest) {
+  } else if (is_short) {
     const EngagementLook before = last_;
     // Often in brief is better than seldom.
     is_brief_ = saved_cells_ < look_cells_;
@@ -291,9 +359,12 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     if (last_.is_engaged() || length_mm_ < closest_mm())
       add(0, 1, last_);
     else
-      take_along(2);
+      take_along(0, 1, 2);
+  } else if (upright_) {
+    take_upright(farthest);
   } else {
-    take_along(static_cast<int>(std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes)));
+    take_along(0, 1,
+               static_cast<int>(std::clamp(std::ceil(length_mm_ / farthest), 1.0, kMostNodes)));
   }
   flush();
   heights_ = nullptr, points_ = nullptr;

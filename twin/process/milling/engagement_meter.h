@@ -12,6 +12,7 @@
 #include "twin/process/engagement_log.h"
 #include "twin/process/milling/engagement_scan.h"
 #include "twin/process/milling/solid_front.h"
+#include "twin/process/milling/upright_arc.h"
 
 namespace kerf {
 
@@ -22,8 +23,10 @@ namespace kerf {
 /// turns by 30 degrees; where looks one after the other are alike, for up to two diameters. Where
 /// moves are cut so quickly that looks would take more than a quarter of that time, for up to four.
 /// Needs heights as they are (PresentHeights) and upright tools, or a model that can be asked about
-/// points (SolidPoints); tools without an undercut, moves that are straight or arcs about Z of up
-/// to one turn. Others are told as unmeasured. One thread.
+/// points (SolidPoints); tools without an undercut, moves that are straight, arcs about Z of up to
+/// one turn, or arcs of upright tools in a plane that stands upright. Of these last each look is at
+/// the line that touches the arc there, no farther apart than kUprightTurn_rad, and parts that are
+/// told turn by kUprightPart_rad at most. Others are told as unmeasured. One thread.
 class EngagementMeter {
  public:
   /// `hand_over`: gives all moves before to the model. Both outlive this.
@@ -52,6 +55,7 @@ class EngagementMeter {
     std::uint32_t pass = EngagementLog::kNoPass;
     bool measured = false;
     EngagementSums sums;
+    double most_mm3 = 0;  ///< what stands before the tool on all of it
   };
   const Taken& take(const Feed& feed);
   /// One that is cut as several, or turns.
@@ -66,6 +70,7 @@ class EngagementMeter {
   void finish();
 
   static constexpr double kSameAngle_rad = 8 * kPi / 180;
+  static constexpr double kUprightTurn_rad = 10 * kPi / 180, kUprightPart_rad = 2 * kPi / 180;
 
  private:
   struct Node {
@@ -74,7 +79,7 @@ class EngagementMeter {
   };
   /// Of looks, times the parts of the way for which they stand.
   struct Sum {
-    double angle = 0, wide = 0, deep = 0, entry = 0, exit = 0, climb = 0;
+    double angle = 0, wide = 0, gaps = 0, deep = 0, entry = 0, exit = 0, climb = 0;
     double effective = 0, contact = 0;
     void add(const EngagementLook& look, double share);
     EngagementLook mean(const EngagementLook& like, double shares) const;
@@ -82,7 +87,10 @@ class EngagementMeter {
   bool is_same(const EngagementLook& a, const EngagementLook& b) const;
   void add(double from, double to, const EngagementLook& look);
   void refine(const Node& from, const Node& to, int halvings);
-  void take_along(int places);
+  void take_along(double from, double to, int places);
+  void take_upright(double farthest_mm);
+  void tell(const EngagementLook& mean, double from, double to);
+  double most_mm2(const EngagementLook& look, double down_rad) const;
   double closest_mm() const;
   void flush();
   EngagementLook look(double at);
@@ -99,6 +107,7 @@ class EngagementMeter {
   PastWays ways_;
   const PresentHeights* owners_ = nullptr;
   double diameter_mm_ = 0;
+  bool is_ball_ = false, is_flat_ = false;
   bool has_held_ = false;
   CutMove held_;
   EngagementLook last_;
@@ -113,6 +122,10 @@ class EngagementMeter {
   const HeightGrid* heights_ = nullptr;
   const SolidPoints* points_ = nullptr;  ///< where there are no heights
   double length_mm_ = 0, start_s_ = 0, duration_s_ = 0, down_rad_ = 0;
+  std::optional<UprightArc> upright_;  ///< if it is one
+  std::vector<double> turnings_;       ///< of that
+  CutMove line_;                       ///< where it is looked at
+  double until_ = 1;                   ///< part of its way, where it turns back
   bool anticlockwise_ = false;
   SourceRef source_;
   Taken taken_;

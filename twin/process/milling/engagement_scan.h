@@ -19,6 +19,7 @@
 #include "twin/process/engagement.h"
 #include "twin/process/milling/front_rays.h"
 #include "twin/process/milling/past_ways.h"
+#include "twin/process/milling/upright_arc.h"
 #include "twin/process/milling/way_spans.h"
 
 namespace kerf {
@@ -80,6 +81,10 @@ class EngagementScan {
     const PastWays* ways = nullptr;
     /// Of what is not flat, by its cells, or (where these are coarse) by a third of the radii.
     bool is_brief = false;
+    /// An arc that the move touches at that part of its way: the heights have it not yet, and what
+    /// it has gone through it has removed.
+    const UprightArc* own = nullptr;
+    double own_part = 0;
   };
   /// What the cutter's side has in it where it is at that part of its way, by a ring of looks ahead
   /// of it. At its rim walls are where the moves that made them have left them, and the sides of a
@@ -211,6 +216,7 @@ class EngagementScan {
     return own_until_ <= 0 ? height : behind_own(point, height);
   }
   double behind_own(const Vec2& point, double height) const;
+  bool is_cut_by_own(const Vec2& point, double height) const;
   double left_by_owners(const Vec2& point, int i, int j) const;
   double left_at_wall(const Vec2& point, int i, int j, double height) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
@@ -367,6 +373,8 @@ class EngagementScan {
   std::vector<Edge> edges_;
   const PresentHeights* owners_ = nullptr;
   const PastWays* ways_ = nullptr;
+  const UprightArc* own_ = nullptr;
+  double own_part_ = 0;
   double own_until_ = 0;  ///< of an arc that may come back to where it began: so far it has cut
   /// The move that is held back; length 0: none.
   struct Held {

@@ -7,6 +7,7 @@ namespace kerf {
 
 /// A height that changes evenly: by Simpson's rule, which is right of its products.
 void FrontRays::add(const Direction& from, const Direction& to) {
+  span(from, to);
   const double width = to.angle - from.angle;
   const Direction middle{0.5 * (from.angle + to.angle), 0.5 * (from.high_mm + to.high_mm)};
   const auto sum = [&](auto&& value) {
@@ -19,7 +20,28 @@ void FrontRays::add(const Direction& from, const Direction& to) {
   heights_.square += sum([](const Direction& at) { return at.high_mm * at.high_mm; });
 }
 
+/// What lies between two directions that are both in material is, too.
+void FrontRays::span(const Direction& from, const Direction& to) {
+  const bool was = from.right_mm <= from.left_mm, is = to.right_mm <= to.left_mm;
+  if (!was && !is) return;
+  if (!was) return spans_.push_back({to.right_mm, to.left_mm});
+  if (!is) return spans_.push_back({from.right_mm, from.left_mm});
+  spans_.push_back({std::min(from.right_mm, to.right_mm), std::max(from.left_mm, to.left_mm)});
+}
+
+double FrontRays::gaps_mm() {
+  std::sort(spans_.begin(), spans_.end(),
+            [](const Span& a, const Span& b) { return a.right_mm < b.right_mm; });
+  double gaps_mm = 0, until_mm = std::numeric_limits<double>::infinity();
+  for (const Span& span : spans_) {
+    gaps_mm += std::max(0.0, span.right_mm - until_mm - apart_mm_);
+    until_mm = std::isinf(until_mm) ? span.left_mm : std::max(until_mm, span.left_mm);
+  }
+  return gaps_mm;
+}
+
 void FrontRays::settle() {
+  found_.gaps_mm = gaps_mm();
   if (heights_.plain <= 0) return;
   const double middle = heights_.angle / heights_.plain;
   const double half =
@@ -38,7 +60,8 @@ EngagementLook FrontRays::look(bool anticlockwise) const {
   const double rim = std::sin(kPi / 2 - kRim_rad);
   const double low_mm = low_mm_ < 0 ? std::max(low_mm_ / rim, -radius_mm_) : low_mm_;
   const double high_mm = high_mm_ > 0 ? std::min(high_mm_ / rim, radius_mm_) : high_mm_;
-  look.wide_mm = high_mm - low_mm;
+  look.gaps_mm = std::clamp(look.gaps_mm, 0.0, high_mm - low_mm);
+  look.wide_mm = high_mm - low_mm - look.gaps_mm;
   const double right_share = right_of_way_rad_ / look.angle_rad;
   look.entry_rad = kPi / 2 + (anticlockwise ? right_rad_ : -left_rad_);
   look.exit_rad = kPi / 2 + (anticlockwise ? left_rad_ : -right_rad_);

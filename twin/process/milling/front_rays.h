@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "base/geometry.h"
 #include "twin/process/engagement.h"
@@ -31,7 +32,8 @@ struct FrontContact {
 /// is not flat is in material higher up in one direction than in another, and where that begins
 /// with next to nothing there is no place to point at. Its directions count by that height h: the
 /// angle is (the sum of h)^2 / the sum of h^2, which is that of an even height where it is even;
-/// entry and exit are those of an even height with the same middle and the same spread.
+/// entry and exit are those of an even height with the same middle and the same spread. The width
+/// is that of its spans in material, seen along the way, without the gaps between them.
 class FrontRays {
  public:
   /// `count`: directions but one, of kMost at most.
@@ -61,7 +63,17 @@ class FrontRays {
 
   struct Direction {
     double angle = 0, high_mm = 0;
+    /// Of what is in material, across the way, to the left; right > left: nothing is.
+    double right_mm = 1, left_mm = 0;
   };
+  static Direction direction_of(double angle, const FrontContact& contact) {
+    Direction at{angle, contact.high_mm};
+    if (contact.radius_mm <= 0) return at;
+    const double inner_mm = contact.inner_mm * std::sin(angle);
+    const double outer_mm = contact.radius_mm * std::sin(angle);
+    at.right_mm = std::min(inner_mm, outer_mm), at.left_mm = std::max(inner_mm, outer_mm);
+    return at;
+  }
   double direction(int k) const {
     if (k == 0) return kRim_rad - kPi / 2;
     if (k == count_) return kPi / 2 - kRim_rad;
@@ -81,7 +93,10 @@ class FrontRays {
   /// All between the two is in material.
   void count(double from, double to) {
     if (to <= from) return;
-    if (found_.angle_rad <= 0) right_rad_ = from;
+    if (found_.angle_rad <= 0)
+      right_rad_ = from;
+    else if (from > left_rad_)
+      found_.gaps_mm += radius_mm_ * (std::sin(from) - std::sin(left_rad_));
     left_rad_ = to;
     found_.angle_rad += to - from;
     right_of_way_rad_ += std::min(to, 0.0) - std::min(from, 0.0);
@@ -92,6 +107,8 @@ class FrontRays {
   void weigh(const ContactAt& contact_at, const Direction& from, const Direction& to, int halvings);
   void add(const Direction& from, const Direction& to);
   void settle();
+  void span(const Direction& from, const Direction& to);
+  double gaps_mm();
 
   int count_;
   double radius_mm_;
@@ -99,6 +116,12 @@ class FrontRays {
   EngagementLook found_;
   double low_mm_ = std::numeric_limits<double>::infinity(), high_mm_ = -low_mm_;
   double left_rad_ = 0, right_rad_ = 0;
+  /// Of what is not flat, across the way; and how far they may be apart and belong together.
+  struct Span {
+    double right_mm, left_mm;
+  };
+  std::vector<Span> spans_;
+  double apart_mm_ = 0;
   double right_of_way_rad_ = 0;  ///< of angle_rad
   /// Integrals over the directions: of the height h, of h * angle, h * angle^2, h^2, and of h on
   /// the right of the way.
@@ -119,7 +142,7 @@ void FrontRays::sweep(const ContactAt& contact_at) {
   }
   if (found_.effective_mm <= 0) return;
   const auto at = [&](int k) {
-    return Direction{direction(k), contacts[static_cast<std::size_t>(k)].high_mm};
+    return direction_of(direction(k), contacts[static_cast<std::size_t>(k)]);
   };
   if (!is_flat_) {
     add({-kPi / 2, at(0).high_mm}, at(0));
@@ -162,6 +185,8 @@ void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_
                      double high_mm) {
   low_mm_ = low_mm, high_mm_ = high_mm;
   const auto steps = static_cast<double>(contacts.size() - 1);
+  // Where it begins and ends is somewhere between two steps.
+  apart_mm_ = radius_mm_ * kPi / steps;
   const auto angle_of = [steps](std::size_t k) {
     return kPi * (static_cast<double>(k) / steps - 0.5);
   };
@@ -177,6 +202,8 @@ void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_
       both.edge_mm += wall.edge_mm;
     }
     if (both.radius_mm <= 0) return;
+    const Direction across = direction_of(angle, both);
+    span(across, across);
     found_.deep_mm = std::max(found_.deep_mm, both.deep_mm);
     found_.effective_mm = std::max(found_.effective_mm, 2 * both.radius_mm);
     found_.contact_mm = std::max(found_.contact_mm, both.edge_mm);
@@ -187,6 +214,7 @@ void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_
   for (std::size_t k = 1; k < contacts.size(); ++k) {
     const FrontContact wall = wall_of(k);
     note_wall(contacts[k], wall, angle_of(k));
+    span(direction_of(angle_of(k - 1), contacts[k - 1]), direction_of(angle_of(k), contacts[k]));
     const double from = angle_of(k - 1), to = angle_of(k);
     const double low = contacts[k - 1].high_mm, high = contacts[k].high_mm;
     if ((before.edge_mm > 0) == (wall.edge_mm > 0)) {
@@ -220,7 +248,7 @@ void FrontRays::weigh(const ContactAt& contact_at, const Direction& from, const 
   const FrontContact contact = contact_at(angle);
   note(contact, angle);
   highest_mm_ = std::max(highest_mm_, contact.high_mm);
-  const Direction middle{angle, contact.high_mm};
+  const Direction middle = direction_of(angle, contact);
   const double even_mm = 0.5 * (from.high_mm + to.high_mm);
   const bool goes_on = std::abs(middle.high_mm - even_mm) > kEven / 4 * highest_mm_;
   weigh(contact_at, from, middle, goes_on ? halvings - 1 : 0);

@@ -72,7 +72,7 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   for (const CutMove& move : divided_) ways += way_length_mm(move);
   if (ways <= 0) return;
   EngagementSums sums;
-  double start_s = step.start_s;
+  double most_mm3 = 0, start_s = step.start_s;
   for (const CutMove& move : divided_) {
     const double duration_s = step.duration_s * way_length_mm(move) / ways;
     const CutMove looked_at = as_circle(move);
@@ -82,11 +82,13 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
     start_s += duration_s;
     if (taken.pass != EngagementLog::kNoPass) flight.pass = taken.pass;
     sums.add(taken.sums);
+    most_mm3 += taken.most_mm3;
     engagement_->note(move);
   }
   const auto count = static_cast<double>(divided_.size());
   flight.engaged_mm = sums.in_material_mm() / count;
   flight.engaged_s = sums.cut_s / count;
+  flight.engaged_mm3 = most_mm3 / count;
   // Those before may have been taken meanwhile.
   flight.parts = engaged_parts_.heard() - heard_before;
   flight.way_mm = step.length_mm;

@@ -459,7 +459,8 @@ void MillingStage::collect_reports() {
     if (report.film.area_mm2 > 0 && !site_.holding)
       films_.take(report.film, {move.source, move.start_s, use.number});
     if (engagement_ && (report.removed_mm3 > 0 || move.engaged_mm > 0))
-      site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s);
+      site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s,
+                                    move.engaged_mm3);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
     if (move.reversed && move.feed && move.straight_down && !reversed_told_.contains(use.number))

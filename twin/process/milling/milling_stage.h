@@ -82,6 +82,7 @@ class MillingStage final : public Process {
     std::uint32_t use = 0;  ///< index of ToolUse
     std::uint32_t pass = EngagementLog::kNoPass;
     double engaged_mm = 0, engaged_s = 0;  ///< of it, in material
+    double engaged_mm3 = 0;                ///< .. and what stands before the tool there
     double rpm = 0;                        ///< of a spindle that turns
     double feed_per_tooth_mm = 0;          ///< at most; 0: not known
     double mean_per_tooth_mm = 0;

@@ -56,6 +56,7 @@ void PastWays::clear() {
   ways_.clear();
   mounts_.clear();
   arcs_.clear();
+  uprights_.clear();
   tools_.clear();
   last_.clear();
   tool_ = 0;
@@ -97,7 +98,10 @@ void PastWays::add(const CutMove& move) {
     way.from[i] = static_cast<float>(move.from_mm[i]);
     way.to[i] = static_cast<float>(move.to_mm[i]);
   }
-  if (move.arc) {
+  if (const std::optional<UprightArc> upright = UprightArc::of(move)) {
+    way.arc = kUpright + static_cast<std::uint32_t>(uprights_.size());
+    uprights_.push_back(*upright);
+  } else if (move.arc) {
     const CutArc& arc = *move.arc;
     const Vec2 center(arc.center_mm), from = Vec2(move.from_mm) - center;
     const double radius = glm::length(from);
@@ -135,6 +139,8 @@ bool PastWays::covers(std::uint32_t number, const Vec2& point, double z_mm,
 
 bool PastWays::covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
                       double margin_mm) const {
+  if (way.arc != kNone && way.arc >= kUpright)
+    return upright_height(way, tool, point, margin_mm) <= z_mm + margin_mm;
   if (static_cast<double>(std::min(way.from[2], way.to[2])) > z_mm + margin_mm) return false;
   return way.arc == kNone ? line_covers(way, tool, point, z_mm, margin_mm)
                           : arc_covers(way, tool, point, z_mm, margin_mm);
@@ -174,11 +180,23 @@ double PastWays::height_mm(std::uint32_t number, const Vec2& point, double margi
   for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
     const Way& way = ways_[n];
     const Tool& tool = tools_[tool_of(n)];
-    low = std::min(low, way.arc == kNone ? line_height(way, tool, point, margin_mm)
-                                         : arc_height(way, tool, point, margin_mm));
+    low = std::min(low, height_of(way, tool, point, margin_mm));
     ++asked;
   }
   return low;
+}
+
+double PastWays::height_of(const Way& way, const Tool& tool, const Vec2& point,
+                           double margin_mm) const {
+  if (way.arc == kNone) return line_height(way, tool, point, margin_mm);
+  return way.arc < kUpright ? arc_height(way, tool, point, margin_mm)
+                            : upright_height(way, tool, point, margin_mm);
+}
+
+double PastWays::upright_height(const Way& way, const Tool& tool, const Vec2& point,
+                                double margin_mm) const {
+  const auto lift = [&](double mm) { return tool.lift_mm(std::max(0.0, mm - margin_mm)); };
+  return uprights_[way.arc - kUpright].lowest_over(point, 0, 1, tool.radius_mm + margin_mm, lift);
 }
 
 double PastWays::line_height(const Way& way, const Tool& tool, const Vec2& point,

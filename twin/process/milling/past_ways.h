@@ -10,6 +10,7 @@
 #include "base/geometry.h"
 #include "base/growing_list.h"
 #include "stock/stock_model.h"
+#include "twin/process/milling/upright_arc.h"
 
 namespace kerf {
 
@@ -18,7 +19,7 @@ bool is_ball_end(const Cutter& cutter);
 
 /// Moves of upright tools by their numbers, which a workpiece keeps for each of its cells
 /// (StockModel::keep_cut_ids). Several moves may have one number: of these the last kMostOfOne are
-/// asked. 36 bytes a move, 76 an arc. One thread.
+/// asked. 36 bytes a move, 76 an arc, some hundreds one that stands upright. One thread.
 class PastWays {
  public:
   static constexpr int kMostOfOne = 64;
@@ -28,7 +29,8 @@ class PastWays {
   void clear();
   /// What is added from now on is cut by this one, which the program calls by this number.
   void mount(const Cutter& cutter, int number = 0);
-  /// Lines, and arcs about Z. Others are left out, and cover nothing.
+  /// Lines, and arcs about Z or in a plane that stands upright. Others are left out, and cover
+  /// nothing.
   void add(const CutMove& move);
   /// How many there are, and of each of them.
   std::size_t tools() const { return tools_.size(); }
@@ -52,7 +54,7 @@ class PastWays {
   double height_mm(std::uint32_t number, const Vec2& point, double margin_mm = 0) const;
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0}, kUpright = std::uint32_t{1} << 31;
   /// A cutter's surface: how wide it is where it is so much above its tip.
   struct Tool {
     std::string spec;
@@ -73,7 +75,7 @@ class PastWays {
   struct Way {
     float from[3], to[3];
     std::uint32_t before = kNone;  ///< of the same number
-    std::uint32_t arc = kNone;
+    std::uint32_t arc = kNone;     ///< from kUpright on one of uprights_
   };
   /// From a way on, this tool was in the spindle.
   struct Mount {
@@ -93,10 +95,14 @@ class PastWays {
                   double margin_mm) const;
   double line_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
   double arc_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
+  double upright_height(const Way& way, const Tool& tool, const Vec2& point,
+                        double margin_mm) const;
+  double height_of(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
 
   GrowingList<Way> ways_;
   std::vector<Mount> mounts_;
   std::vector<Arc> arcs_;
+  std::vector<UprightArc> uprights_;
   std::vector<Tool> tools_;
   std::size_t tool_ = 0;
   std::vector<std::uint32_t> last_;  ///< by number

@@ -72,13 +72,13 @@ void TurnLoads::note(Trouble trouble, const Part& part, double seconds, const Va
   worst = {true, range, worst.seconds, part.source, part.start_s, part.from_mm};
 }
 
-void TurnLoads::tell_unmeasured(SourceRef source, double start_s, double seconds,
-                                LoadListener* listener) const {
+void TurnLoads::tell_unmeasured(int tool, SourceRef source, double start_s, double seconds,
+                                LoadListener* listener) {
   if (listener == nullptr) return;
   CutLoad load;
   load.start_s = start_s;
   load.seconds = seconds;
-  load.tool = tool_ < tools_.size() ? tools_[tool_].number : 0;
+  load.tool = tool;
   load.source = source;
   load.is_engaged = true;
   load.is_measured = false;
@@ -187,7 +187,7 @@ void TurnLoads::tell(const Tool& tool, Trouble trouble, FindingId id, double lim
   Finding finding = finding_at(id, severity, worst.source, worst.time_s);
   finding.tool = tool.number;
   finding.position_mm = worst.at_mm;
-  finding.text = text + trf(" (for {:.1f} s in all)", worst.seconds);
+  finding.text = text + trf(" (for {} in all)", span_text(worst.seconds));
   log_.add(std::move(finding));
 }
 

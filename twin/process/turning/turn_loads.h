@@ -44,9 +44,10 @@ class TurnLoads {
   };
   /// `listener`: is told what it was like; null: nobody is.
   void take(const Part& part, LoadListener* listener = nullptr);
-  /// Of a feed move that nobody has measured, and that has cut.
-  void tell_unmeasured(SourceRef source, double start_s, double seconds,
-                       LoadListener* listener) const;
+  /// Of a feed move of that tool, which may be one that is not mounted here (driven), that nobody
+  /// has measured, and that has cut.
+  static void tell_unmeasured(int tool, SourceRef source, double start_s, double seconds,
+                              LoadListener* listener);
   /// The program is over: what is too much.
   void finish();
   void forget();

@@ -505,7 +505,8 @@ void TurningStage::note_engagement(const Motion& m, const TimedStep& step, const
   if (threads || is_driven()) {
     if (piece.removed_mm3 <= 0) return;
     site_.engagement->add_unmeasured(way.length_mm);
-    loads_.tell_unmeasured(m.source, step.start_s, step.duration_s, site_.loads);
+    TurnLoads::tell_unmeasured(mounted_->number, m.source, step.start_s, step.duration_s,
+                               site_.loads);
     return;
   }
   way.seconds = step.duration_s;

@@ -215,6 +215,28 @@ TEST_F(CutLoadsTest, WhatTheMakerAllows) {
   EXPECT_EQ(told(), "");
 }
 
+TEST_F(CutLoadsTest, TheOtherWayRoundForAnInstantIsNoWayToMill) {
+  CuttingWish wish;
+  wish.wants_climb = true;
+  EngagementLook climb = slot(1, 3), up = slot(1, 3);
+  climb.angle_rad = 1, climb.entry_rad = kPi - 1, climb.climb = 1;
+  up.angle_rad = 1, up.exit_rad = 1, up.climb = 0;
+  run(wish, "flat:10", climb, 6);
+  take(up, 0.04);
+  take(up, 0.05);
+  EXPECT_EQ(told(), "");
+  take(up, 0.02);
+  EXPECT_EQ(told(), "conventional worse 2\n");
+  EXPECT_EQ(log_.kept().back().text,
+            "conventional milling, where climb milling is wanted (for 0.1 s in all)");
+  // All that a tool cuts, however short.
+  log_ = {};
+  run(wish, "flat:10", up, 0.0404);
+  EXPECT_EQ(told(), "conventional worse 5\n");
+  EXPECT_EQ(log_.kept().back().text,
+            "conventional milling, where climb milling is wanted (for 40 ms in all)");
+}
+
 TEST_F(CutLoadsTest, ABallIsCutNoWiderThanItIs) {
   // In a slot the model's section is that of the ball; 1 mm deep it is 6 mm wide.
   run(in_steel(), "ball:10:teeth=2", slot(1, 6));

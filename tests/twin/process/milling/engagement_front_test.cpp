@@ -85,6 +85,26 @@ TEST_F(EngagementFrontTest, ASlotIsHalfOfTheEdgeAndAllOfTheWidth) {
 
 /// By its cells alone: a slot, a slot deeper than the ball is high, the step beside a pass, and
 /// nothing where it has been.
+TEST_F(EngagementFrontTest, AGapBetweenTwoSpansIsNoWidth) {
+  // A slot of 3 mm is there in the middle of the way: 2.5 mm are left on either side of it.
+  cut("flat:3", way({0, 20, -2}, {60, 20, -2}));
+  const CutMove along = way({20, 20, -2}, {40, 20, -2});
+  const EngagementLook flat = look("flat:8", along);
+  EXPECT_NEAR(flat.wide_mm, 5, 0.2);
+  EXPECT_NEAR(flat.gaps_mm, 3, 0.2);
+  EXPECT_NEAR(flat.angle_rad, kPi - 2 * std::asin(1.5 / 4), 2 * kDegree);
+  // A ball of R4 is sqrt(12) mm wide on either side, 2 mm deep.
+  for (const EngagementLook& ball : {look("ball:8", along), brief("ball:8", along)}) {
+    EXPECT_NEAR(ball.wide_mm, 2 * std::sqrt(12.0) - 3, 0.35);
+    EXPECT_NEAR(ball.gaps_mm, 3, 0.3);
+  }
+  EXPECT_EQ(look("flat:8", way({20, 30, -2}, {40, 30, -2})).gaps_mm, 0);
+  EXPECT_EQ(look("ball:8", way({20, 30, -2}, {40, 30, -2})).gaps_mm, 0);
+  EXPECT_EQ(brief("ball:8", way({20, 30, -2}, {40, 30, -2})).gaps_mm, 0);
+  // Along its side it is one span.
+  EXPECT_EQ(look("flat:8", way({20, 23, -2}, {40, 23, -2})).gaps_mm, 0);
+}
+
 TEST_F(EngagementFrontTest, InBriefABallIsWhereItsCellsAre) {
   for (const Vec2 ahead : {Vec2(1, 0), Vec2(0, 1), Vec2(-0.6, 0.8)}) {
     const Vec3 from(Vec2(30, 20) - 5.0 * ahead, -2), to(Vec2(30, 20) + 5.0 * ahead, -2);
