@@ -21,20 +21,6 @@ constexpr double kAtRim_cells = 2;
 /// From the deepest cell to the next one, so many places.
 constexpr int kDeepSteps = 4;
 
-/// atan2, right to 2e-5: a thousandth of the step between two directions.
-double direction_of(double y, double x) {
-  const double over = std::abs(y), out = std::abs(x);
-  const double part = std::min(over, out) / std::max({over, out, 1e-300}), square = part * part;
-  // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49.
-  double angle =
-      part *
-      (0.9998660 +
-       square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
-  if (over > out) angle = kPi / 2 - angle;
-  if (x < 0) angle = kPi - angle;
-  return y < 0 ? -angle : angle;
-}
-
 }  // namespace
 
 /// What is not flat, and that finely.
@@ -44,33 +30,17 @@ bool EngagementScan::is_fine() const { return !is_flat() && radius_ >= kFineCell
 void EngagementScan::weigh_cells(double cell_mm) {
   if (cell_mm == weighed_mm_) return;
   weighed_mm_ = cell_mm;
-  weights_.resize(kLifts + 1);
+  for (std::vector<double>* each : {&weights_.height_rad, &weights_.thick_per_mm, &weights_.steps})
+    each->resize(kLifts + 1);
   for (std::size_t k = 0; k <= kLifts; ++k) {
     const double r = std::max(static_cast<double>(k) / lift_scale_, 0.25 * cell_mm);
     const double outer = std::min(r + 0.5 * cell_mm, radius_);
     const double inner = std::max(0.0, r - 0.5 * cell_mm), width = outer - inner;
     const double rise = lift_of(outer) - lift_of(inner);
     const double normal = width / std::hypot(width, rise);
-    weights_[k] = {rise * cell_mm / r, normal / kThinChip_mm,
-                   std::min(cell_mm / r, kPi) / CellFront::kStep};
-  }
-}
-
-/// Where cells are that have material over the cutter's surface: directions, for all of them first,
-/// as nothing in that depends on what the others have.
-void EngagementScan::place_cells(const Station& station, const CellFront& front,
-                                 CellBatch& cells) const {
-  const double least = 0.25 * front.across * cell_;
-  for (int n = 0; n < cells.count; ++n) {
-    const double x = cells.x[n], y = cells.y[n];
-    cells.radius[n] = std::max(cells.radius[n], least);
-    cells.ahead[n] = x * station.ahead.x + y * station.ahead.y;
-    cells.beside[n] = station.ahead.x * y - station.ahead.y * x;
-  }
-  for (int n = 0; n < cells.count; ++n) {
-    cells.step[n] =
-        (direction_of(cells.beside[n], cells.ahead[n]) + kPi / 2) * (1 / CellFront::kStep);
-    cells.under[n] = lift_of(std::abs(cells.beside[n]));
+    weights_.height_rad[k] = rise * cell_mm / r;
+    weights_.thick_per_mm[k] = normal / kThinChip_mm;
+    weights_.steps[k] = std::min(cell_mm / r, kPi) / CellFront::kStep;
   }
 }
 
@@ -78,15 +48,14 @@ void EngagementScan::place_cells(const Station& station, const CellFront& front,
 /// rises over its width, times what of its circle it covers.
 void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) const {
   const double r = cells.radius[n], depth_mm = cells.depth[n], step = cells.step[n];
-  const CellWeight& weight = weights_[static_cast<std::size_t>(r * lift_scale_)];
-  const double share = std::min(1.0, weight.thick_per_mm * depth_mm) * weight.height_rad;
-  if (weight.steps <= 1) {
+  const double share = cells.share[n], spread = cells.spread[n];
+  if (spread <= 1) {
     front.add(step, share);
   } else {
     // Near the middle a cell is seen in many directions.
-    const int parts = std::min(static_cast<int>(weight.steps) + 1, kMostSpread);
+    const int parts = std::min(static_cast<int>(spread) + 1, kMostSpread);
     for (int part = 0; part < parts; ++part)
-      front.add(step + weight.steps * ((part + 0.5) / parts - 0.5), share / parts);
+      front.add(step + spread * ((part + 0.5) / parts - 0.5), share / parts);
   }
   if (cells.ahead[n] < 0) return;
   const Vec2 arm(cells.x[n], cells.y[n]);
@@ -103,25 +72,41 @@ void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) 
   if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
 }
 
-/// Leaves those cells that are over the surface, in the way and on no slope that it has cut.
+CellGround EngagementScan::ground_of(const Station& station, const CellRow& row) const {
+  CellGround ground;
+  ground.center_x = station.center.x, ground.center_y = station.center.y;
+  ground.ahead_x = station.ahead.x, ground.ahead_y = station.ahead.y;
+  ground.tip = row.tip, ground.film = kThinnestFilm_mm;
+  ground.radius = radius_, ground.wall_slope = kWallSlope;
+  ground.slope = row.slope;
+  return ground;
+}
+
+/// Leaves those cells that are in material, in the way and on no slope that it has cut.
 void EngagementScan::keep_over(const Station& station, const CellRow& row, CellBatch& cells) const {
-  for (int n = 0; n < cells.count; ++n) {
-    const double x = cells.x[n], y = cells.y[n];
-    cells.radius[n] = std::sqrt(x * x + y * y);
+  HeldWay held;
+  const bool has_closed_form = held_.slope == 0 || is_ball_;
+  if (held_.length > 0 && has_closed_form) {
+    held = {held_.start.x, held_.start.y, held_.direction.x, held_.direction.y, held_.length,
+            held_.z,       held_.slope,   held_.lean,        held_.lowest};
   }
-  for (int n = 0; n < cells.count; ++n) {
-    cells.lift[n] = lift_of(cells.radius[n]);
-    cells.depth[n] = row.tip + cells.lift[n] + kThinnestFilm_mm;
+  const CellGround ground = ground_of(station, row);
+  kernel_->take_cells(ground, way_end(station), held, lift_table(), cells);
+  const bool asks_each =
+      (held_.length > 0 && !has_closed_form) || own_until_ > 0 || (arc_ && station.is_near_end);
+  for (int n = 0; asks_each && n < cells.count; ++n) {
+    if (cells.depth[n] <= 0) continue;
+    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
+    double height = cells.height[n];
+    if (!has_closed_form) height = behind_held(middle, height);
+    if (own_until_ > 0) height = behind_itself(middle, height);
+    const bool is_on = is_on_way(station, middle);
+    cells.depth[n] = is_on ? height - (row.tip + cells.lift[n] + kThinnestFilm_mm) : -1;
   }
   int kept = 0;
   for (int n = 0; n < cells.count; ++n) {
-    const Vec2 arm(cells.x[n], cells.y[n]);
-    const double radius = cells.radius[n];
-    if (cells.height[n] <= cells.depth[n]) continue;
-    if (station.is_near_end && !is_on_way(station, station.center + arm)) continue;
-    if (row.slope > 0 && slope_of(radius) * glm::dot(arm, station.ahead) <= row.slope * radius)
-      continue;
-    cells.move(n, kept++);
+    cells.move(n, kept);
+    kept += cells.depth[n] > 0 ? 1 : 0;
   }
   cells.count = kept;
 }
@@ -130,18 +115,10 @@ void EngagementScan::keep_over(const Station& station, const CellRow& row, CellB
 void EngagementScan::take_batch(const Station& station, const CellRow& row, CellBatch& cells,
                                 CellFront& front) const {
   keep_over(station, row, cells);
-  int kept = 0;
-  for (int n = 0; n < cells.count; ++n) {
-    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
-    cells.height[n] = behind_held(middle, cells.height[n]);
-    if (own_until_ > 0) cells.height[n] = behind_itself(middle, cells.height[n]);
-  }
-  for (int n = 0; n < cells.count; ++n) {
-    cells.depth[n] = cells.height[n] - cells.depth[n];
-    if (cells.depth[n] > 0) cells.move(n, kept++);
-  }
-  cells.count = kept;
-  place_cells(station, front, cells);
+  const CellWeights weights{weights_.height_rad.data(), weights_.thick_per_mm.data(),
+                            weights_.steps.data()};
+  kernel_->place_cells(ground_of(station, row), lift_table(), weights, 0.25 * front.across * cell_,
+                       1 / CellFront::kStep, cells);
   for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
   cells.count = 0;
 }
@@ -186,7 +163,8 @@ void EngagementScan::take_cells(const Station& station, CellFront& front) const 
   row.slope = rise_ > 0 ? rise_ / length_ : 0;
   row.to_part = kLifts / (radius_ * radius_);
   row.cell_x = cell_x, row.center_x = center.x;
-  CellBatch cells;
+  CellBatch& cells = cells_;
+  cells.count = 0;
   const auto row_at = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
   const int last_j = std::min(row_at(center.y + reach), heights_->ny() - 1);
   const int each = front.each, rows = front.rows;
