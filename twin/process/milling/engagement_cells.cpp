@@ -14,6 +14,15 @@ namespace {
 constexpr double kManyCells = 31;
 /// From where a cell is at it, a direction may be seen from so many sides of it.
 constexpr int kMostSpread = 12;
+/// The middles of so many equal parts of a width of 1.
+constexpr auto kPartsOfSpread = [] {
+  std::array<std::array<double, kMostSpread>, kMostSpread + 1> middles{};
+  for (std::size_t parts = 1; parts < middles.size(); ++parts) {
+    for (std::size_t part = 0; part < parts; ++part)
+      middles[parts][part] = (static_cast<double>(part) + 0.5) / static_cast<double>(parts) - 0.5;
+  }
+  return middles;
+}();
 /// Looking for where material ends, so many cells beyond the last in it.
 constexpr double kBeyond_cells = 1.5;
 /// So near to the rim, at least, is the cell before it.
@@ -46,30 +55,41 @@ void EngagementScan::weigh_cells(double cell_mm) {
 
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
-void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) const {
-  const double r = cells.radius[n], depth_mm = cells.depth[n], step = cells.step[n];
-  const double share = cells.share[n], spread = cells.spread[n];
+void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) {
+  const double step = cells.step[n], share = cells.share[n], spread = cells.spread[n];
   if (spread <= 1) {
     front.add(step, share);
   } else {
     // Near the middle a cell is seen in many directions.
     const int parts = std::min(static_cast<int>(spread) + 1, kMostSpread);
-    for (int part = 0; part < parts; ++part)
-      front.add(step + spread * ((part + 0.5) / parts - 0.5), share / parts);
+    const double* const places = kPartsOfSpread[static_cast<std::size_t>(parts)].data();
+    const double each = share / parts;
+    for (int part = 0; part < parts; ++part) front.add(step + spread * places[part], each);
   }
   if (cells.ahead[n] < 0) return;
-  const Vec2 arm(cells.x[n], cells.y[n]);
-  const double beside = cells.beside[n];
-  FrontContact& contact = front.at[static_cast<std::size_t>(step + 0.5)];
-  contact.inner_mm = contact.radius_mm <= 0 ? r : std::min(contact.inner_mm, r);
-  contact.radius_mm = std::max(contact.radius_mm, r);
-  // At the blank's edge heights are taken no further than they go.
-  const double above_tip = std::min(depth_mm + cells.lift[n], front.most_above_tip_mm);
-  contact.deep_mm = std::max(contact.deep_mm, above_tip - cells.under[n]);
-  if (contact.deep_mm > front.deep_mm) front.deep_mm = contact.deep_mm, front.deepest = arm;
-  if (r > front.farthest_mm) front.farthest_mm = r, front.farthest = arm;
-  if (beside > front.left_mm) front.left_mm = beside, front.leftmost = arm;
-  if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
+  CellFront::Extent& extent = front.extent[static_cast<std::size_t>(step + 0.5)];
+  extent.inner_mm = std::min(extent.inner_mm, cells.radius[n]);
+  extent.outer_mm = std::max(extent.outer_mm, cells.radius[n]);
+  extent.deep_mm = std::max(extent.deep_mm, cells.deep[n]);
+}
+
+/// Of what is ahead, the first of those that are farther, or deeper, than all before.
+void EngagementScan::take_outermost(const CellBatch& cells, CellFront& front) {
+  const auto first_of = [&](const CellBatch::Each& each, double value) {
+    int n = 0;
+    while (each[n] != value || cells.ahead[n] < 0) ++n;
+    return Vec2(cells.x[n], cells.y[n]);
+  };
+  if (cells.most_deep > front.deep_mm)
+    front.deep_mm = cells.most_deep, front.deepest = first_of(cells.deep, cells.most_deep);
+  if (cells.most_radius > front.farthest_mm)
+    front.farthest_mm = cells.most_radius,
+    front.farthest = first_of(cells.radius, cells.most_radius);
+  if (cells.most_beside > front.left_mm)
+    front.left_mm = cells.most_beside, front.leftmost = first_of(cells.beside, cells.most_beside);
+  if (cells.least_beside < front.right_mm)
+    front.right_mm = cells.least_beside,
+    front.rightmost = first_of(cells.beside, cells.least_beside);
 }
 
 CellGround EngagementScan::ground_of(const Station& station, const CellRow& row) const {
@@ -117,10 +137,23 @@ void EngagementScan::take_batch(const Station& station, const CellRow& row, Cell
   keep_over(station, row, cells);
   const CellWeights weights{weights_.height_rad.data(), weights_.thick_per_mm.data(),
                             weights_.steps.data()};
-  kernel_->place_cells(ground_of(station, row), lift_table(), weights, 0.25 * front.across * cell_,
+  // At the blank's edge heights are taken no further than they go.
+  CellGround ground = ground_of(station, row);
+  ground.most_above_tip = front.most_above_tip_mm;
+  kernel_->place_cells(ground, lift_table(), weights, 0.25 * front.across * cell_,
                        1 / CellFront::kStep, cells);
   for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
+  take_outermost(cells, front);
   cells.count = 0;
+}
+
+/// Where the heights of eight cells side by side begin, in blocks of kBlockX.
+static const float* of_eight(const HeightGrid& heights, int i, int j) {
+  static_assert(HeightGrid::kTileCells % HeightGrid::Row::kOfHighest == 0);
+  constexpr unsigned kSide = HeightGrid::kTileCells;
+  const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
+  return heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
+         HeightGrid::offset(i, j);
 }
 
 /// Cells of a row that are higher than what the cutter leaves anywhere near them. Of eight side by
@@ -129,12 +162,13 @@ void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells)
   const HeightGrid::Row heights(*heights_, row.j);
   constexpr int kOnce = HeightGrid::Row::kOfHighest;
   const double y2 = row.y * row.y;
-  const auto collect = [&](int i) {
-    const double x = row.x_of(i), height = static_cast<double>(heights.kept(i));
-    const auto k = static_cast<std::size_t>((x * x + y2) * row.to_part);
+  const double *const low_lift = low_lift_.data(), *const least_lift = least_lift_.data();
+  const auto collect = [&](int i, float kept) {
+    const double x = row.x_of(i), height = static_cast<double>(kept);
+    const int k = static_cast<int>((x * x + y2) * row.to_part);
     // No higher than the profile somewhat farther in.
     cells.x[cells.count] = x, cells.y[cells.count] = row.y, cells.height[cells.count] = height;
-    cells.count += height > row.tip + low_lift_[k] ? 1 : 0;
+    cells.count += height > row.tip + low_lift[k] ? 1 : 0;
   };
   const bool is_plain = each == 1 && row.last + kOnce < heights_->nx();
   for (int i = row.first; i <= row.last;) {
@@ -142,13 +176,22 @@ void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells)
     if (is_plain) {
       const double nearest = std::max({row.x_of(i), -row.x_of(end), 0.0});
       const double least =
-          row.tip + least_lift_[static_cast<std::size_t>((nearest * nearest + y2) * row.to_part)];
+          row.tip + least_lift[static_cast<int>((nearest * nearest + y2) * row.to_part)];
       if (static_cast<double>(heights.highest_from(i - i % kOnce)) <= least) {
         i = end + 1;
         continue;
       }
     }
-    for (; i <= end; i += each) collect(i);
+    if (!is_plain) {
+      for (; i <= end; i += each) collect(i, heights.kept(i));
+      continue;
+    }
+    const float* const kept = of_eight(*heights_, i - i % kOnce, row.j);
+    for (; i <= end; ++i) {
+      const int k = i % kOnce;
+      collect(i, kept[k / HeightGrid::kBlockX * (HeightGrid::kBlockX * HeightGrid::kBlockY) +
+                      k % HeightGrid::kBlockX]);
+    }
   }
 }
 
@@ -236,6 +279,12 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
   front.most_above_tip_mm = heights_->bounds_mm().max.z - station.tip_z;
   weigh_cells(front.across * cell_);
   take_cells(station, front);
+  for (std::size_t k = 0; k < front.at.size(); ++k) {
+    const CellFront::Extent& extent = front.extent[k];
+    if (extent.outer_mm <= 0) continue;
+    front.at[k].inner_mm = extent.inner_mm, front.at[k].radius_mm = extent.outer_mm;
+    front.at[k].deep_mm = extent.deep_mm;
+  }
   FrontRays rays(kRays, radius_, false);
   double left_mm = front.left_mm, right_mm = front.right_mm;
   if (front.farthest_mm > 0) {

@@ -347,6 +347,25 @@ double EngagementScan::over_ray(const Ray& ray, double radius) const {
   return over_surface(*ray.station, ray.station->center + radius * ray.out) - kThinnestFilm_mm;
 }
 
+/// As they are kept. Where all four are in one tile only the first is looked for.
+static void read_four(const HeightGrid& heights, RayPlaces& at, int k) {
+  constexpr unsigned kSide = HeightGrid::kTileCells, kX = HeightGrid::kBlockX,
+                     kY = HeightGrid::kBlockY, kBlock = kX * kY;
+  const auto x = static_cast<unsigned>(at.i[k]), y = static_cast<unsigned>(at.j[k]);
+  if (x % kSide == kSide - 1 || y % kSide == kSide - 1) {
+    const std::array<float, 4> four = heights.heights_of_four(at.i[k], at.j[k]);
+    for (std::size_t n = 0; n < four.size(); ++n) at.height[n][k] = four[n];
+    return;
+  }
+  const float* const first =
+      heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
+      HeightGrid::offset(at.i[k], at.j[k]);
+  const unsigned right = x % kX == kX - 1 ? kBlock - (kX - 1) : 1;
+  const unsigned up = y % kY == kY - 1 ? kSide / kX * kBlock - (kY - 1) * kX : kX;
+  at.height[0][k] = first[0], at.height[1][k] = first[right];
+  at.height[2][k] = first[up], at.height[3][k] = first[up + right];
+}
+
 /// The same of many radii at once.
 void EngagementScan::over_places(const Ray& ray, RayPlaces& at, int count) const {
   const Station& station = *ray.station;
@@ -357,13 +376,11 @@ void EngagementScan::over_places(const Ray& ray, RayPlaces& at, int count) const
   const FrontGrid grid = front_grid();
   const RayLine line{station.center.x, station.center.y, ray.out.x, ray.out.y};
   kernel_->lay_ray(grid, line, way_end(station), count, at);
-  for (int k = 0; k < count; ++k) {
-    const std::array<float, 4> height = heights_->heights_of_four(at.i[k], at.j[k]);
-    for (std::size_t n = 0; n < height.size(); ++n) at.height[n][k] = height[n];
-  }
+  for (int k = 0; k < count; ++k) read_four(*heights_, at, k);
   RayGround ground;
   ground.tip = std::max(station.tip_z, heights_->bounds_mm().min.z);
   ground.film = kThinnestFilm_mm;
+  ground.floor = static_cast<double>(heights_->floor_mm());
   ground.wall = kWallCells * cell_, ground.twist = kTwistCells * cell_;
   ground.knows_owners = owners_ != nullptr, ground.has_held = held_.length > 0;
   kernel_->look_along(grid, line, lift_table(), ground, count, at);
@@ -481,11 +498,11 @@ void EngagementScan::look_along(const Ray& ray) {
   over_places(ray, places_, static_cast<int>(radii_.size()));
   along_.resize(radii_.size());
   std::size_t nearest = 0;
+  double depth = places_.depth[0];
   for (std::size_t k = 0; k < radii_.size(); ++k) {
     along_[k] = {radii_[k].mm, places_.depth[k], &radii_[k]};
-    if (along_[k].depth > along_[nearest].depth) nearest = k;
+    if (places_.depth[k] > depth) depth = places_.depth[k], nearest = k;
   }
-  const double depth = along_[nearest].depth;
   if (depth > 0 || depth < -kNearMaterial * radius_) return;
   for (std::size_t k = std::min(nearest + 1, along_.size() - 1); k >= nearest && k > 0; --k) {
     const double radius = 0.5 * (along_[k - 1].radius + along_[k].radius);

@@ -272,6 +272,11 @@ class EngagementScan {
     double across = 1;       ///< so many cells wide is what it stands for
     std::array<FrontContact, kSteps + 1> at{};
     std::array<double, kSteps + 1> share{};  ///< of the height, times the angle
+    /// Of what there is in a direction: the nearest, the farthest, and the deepest.
+    struct Extent {
+      double inner_mm = std::numeric_limits<double>::infinity(), outer_mm = 0, deep_mm = 0;
+    };
+    std::array<Extent, kSteps + 1> extent{};
     /// Seen from the cutter's middle.
     double farthest_mm = 0, left_mm = -std::numeric_limits<double>::infinity(),
            right_mm = std::numeric_limits<double>::infinity();
@@ -282,10 +287,11 @@ class EngagementScan {
     /// What lies between two steps is shared by them.
     void add(double step, double height_rad) {
       if (step < 0 || step >= kSteps) return;
-      const auto low = static_cast<std::size_t>(step);
-      const double beyond = step - static_cast<double>(low);
-      share[low] += height_rad * (1 - beyond);
-      share[low + 1] += height_rad * beyond;
+      const int low = static_cast<int>(step);
+      const double beyond = step - low;
+      double* const at_low = share.data() + low;
+      at_low[0] += height_rad * (1 - beyond);
+      at_low[1] += height_rad * beyond;
     }
   };
   /// Cells of a row, seen from the cutter's middle.
@@ -300,7 +306,8 @@ class EngagementScan {
   CellGround ground_of(const Station& station, const CellRow& row) const;
   void collect_row(const CellRow& row, int each, CellBatch& cells) const;
   void keep_over(const Station& station, const CellRow& row, CellBatch& cells) const;
-  void take_cell(const CellBatch& cells, int n, CellFront& front) const;
+  static void take_cell(const CellBatch& cells, int n, CellFront& front);
+  static void take_outermost(const CellBatch& cells, CellFront& front);
   void take_batch(const Station& station, const CellRow& row, CellBatch& cells,
                   CellFront& front) const;
   void take_cells(const Station& station, CellFront& front) const;
@@ -311,8 +318,9 @@ class EngagementScan {
   /// How high over its tip the cutter's surface is.
   double lift_of(double radius) const {
     const double scaled = std::min(radius * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
+    const int k = static_cast<int>(scaled);
+    const double* const lift = lift_.data() + k;
+    return lift[0] + (scaled - k) * (lift[1] - lift[0]);
   }
   /// How much it rises there for each mm of the radius.
   double slope_of(double radius) const {

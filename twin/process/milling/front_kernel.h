@@ -59,6 +59,7 @@ struct RayLine {
 /// What there is to know of the material about all places.
 struct RayGround {
   double tip = 0;
+  double floor = 0;            ///< no cell is lower
   double film = 0;             ///< what is thinner is level, or none
   double wall = 0, twist = 0;  ///< heights that differ by more
   bool knows_owners = false, has_held = false;
@@ -74,7 +75,10 @@ struct CellBatch {
   alignas(32) Each depth;         ///< how deep they are in material
   alignas(32) Each ahead, beside, step;  ///< along and beside the way, and the direction
   alignas(32) Each under;                ///< what the cutter leaves there, over its tip
-  alignas(32) Each share, spread;        ///< of the height, and of directions
+  alignas(32) Each deep;                 ///< how high material is over that
+  /// Of those ahead of the cutter.
+  double most_deep = 0, most_radius = 0, most_beside = 0, least_beside = 0;
+  alignas(32) Each share, spread;  ///< of the height, and of directions
   void move(int from, int to) {
     x[to] = x[from], y[to] = y[from], height[to] = height[from];
     radius[to] = radius[from], lift[to] = lift[from], depth[to] = depth[from];
@@ -96,6 +100,7 @@ struct CellGround {
   double radius = 0;      ///< of the cutter
   double wall_slope = 0;  ///< what rises by more for each mm of the radius is a wall of the cutter
   double slope = 0;       ///< of its way up; it leaves what is less steep
+  double most_above_tip = 0;
 };
 
 /// By the distance from the cutter's middle, as LiftTable: what a cell in material adds.

@@ -68,7 +68,7 @@ static void look_along(const FrontGrid& grid, const RayLine& line, const LiftTab
   const int whole = (count + 3) & ~3;
   const double* const lift = table.lift;
   const double scale = table.scale, last = table.last, tip = ground.tip;
-  const double far_x = grid.cell_x, far_y = grid.cell_y;
+  const double far_x = grid.cell_x, far_y = grid.cell_y, floor = ground.floor;
   const int walls = ground.knows_owners ? RayPlaces::kOwners : RayPlaces::kAsk;
   const double twist_most = ground.knows_owners ? ground.twist : kFar;
   const double held_from = ground.has_held ? ground.film : kFar;
@@ -79,8 +79,10 @@ static void look_along(const FrontGrid& grid, const RayLine& line, const LiftTab
   }
   KERF_EACH_APART
   for (int n = 0; n < whole; ++n) {
-    const double a = static_cast<double>(at.height[0][n]), b = static_cast<double>(at.height[1][n]);
-    const double c = static_cast<double>(at.height[2][n]), d = static_cast<double>(at.height[3][n]);
+    const double a = most_of(floor, static_cast<double>(at.height[0][n]));
+    const double b = most_of(floor, static_cast<double>(at.height[1][n]));
+    const double c = most_of(floor, static_cast<double>(at.height[2][n]));
+    const double d = most_of(floor, static_cast<double>(at.height[3][n]));
     const double highest = most_of(most_of(a, b), most_of(c, d));
     const double lowest = least_of(least_of(a, b), least_of(c, d));
     const double high_x = grid.min_x + (at.i[n] + 1 + 0.5) * far_x - line.center_x;
@@ -211,6 +213,21 @@ static void place_cells(const CellGround& ground, const LiftTable& table,
     cells.share[n] = least_of(1.0, thick[k] * cells.depth[n]) * height_rad[k];
     cells.spread[n] = steps[k];
   }
+  KERF_EACH_APART
+  for (int n = 0; n < count; ++n) {
+    const double above_tip = least_of(cells.depth[n] + cells.lift[n], ground.most_above_tip);
+    cells.deep[n] = above_tip - cells.under[n];
+  }
+  double deepest = -kFar, farthest = -kFar, leftmost = -kFar, rightmost = kFar;
+  for (int n = 0; n < count; ++n) {
+    if (cells.ahead[n] < 0) continue;
+    deepest = most_of(deepest, cells.deep[n]);
+    farthest = most_of(farthest, cells.radius[n]);
+    leftmost = most_of(leftmost, cells.beside[n]);
+    rightmost = least_of(rightmost, cells.beside[n]);
+  }
+  cells.most_deep = deepest, cells.most_radius = farthest;
+  cells.most_beside = leftmost, cells.least_beside = rightmost;
 }
 
 }  // namespace kerf::KERF_FRONT_NAMESPACE

@@ -112,7 +112,7 @@ TEST(FrontKernel, APlaceIsAsDeepAsTheSurfaceBetweenFourCells) {
   const FrontGrid grid{0, 0, 1, 1, 8, 8};
   const RayLine line{1, 2, 1, 0.25};
   RayGround ground;
-  ground.film = 1e-4, ground.wall = 3, ground.twist = 0.05;
+  ground.floor = -9, ground.film = 1e-4, ground.wall = 3, ground.twist = 0.05;
   for (const FrontKernel& kernel : front_kernels()) {
     RayPlaces at{};
     for (int k = 0; k < RayPlaces::kMost; ++k) at.radius[k] = 0.37 * k;
