@@ -1,8 +1,10 @@
 // stock/present_heights.h - the heights of a model, for a look between two cuts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "base/mesh_patch.h"
 #include "surface/height_grid.h"
@@ -20,6 +22,11 @@ class PresentHeights {
   /// The move that lowered a cell of these last (StockModel::keep_cut_ids()); MeshPatch::kNotCut:
   /// none, or nobody keeps them.
   virtual std::uint32_t present_cut_id(int i, int j) const = 0;
+  /// The same of cells i .. i + 1 of row j, then of row j + 1.
+  virtual std::array<std::uint32_t, 4> present_cut_ids_of_four(int i, int j) const = 0;
+  /// .. of as many as there is room for from (i, j) on, along X or along Y.
+  virtual void read_present_cut_ids(int i, int j, bool along_x,
+                                    std::span<std::uint32_t> out) const = 0;
 };
 
 }  // namespace kerf

@@ -92,7 +92,9 @@ class HeightGrid {
   bool contains(int i, int j) const { return i >= 0 && j >= 0 && i < nx_ && j < ny_; }
   /// Of a cell that the grid contains; never below the floor.
   float height(int i, int j) const {
-    return std::max(floor_mm(), tile(i / kTileCells, j / kTileCells)[offset(i, j)]);
+    const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
+    const std::size_t row = y / kTileCells * static_cast<std::size_t>(tiles_x_);
+    return std::max(floor_mm(), tiles_[row + x / kTileCells][offset(i, j)]);
   }
 
   /// A row of cells, whose share of what says where a cell lies is worked out once.
@@ -128,21 +130,33 @@ class HeightGrid {
 
   /// Of (i, j), (i + 1, j), (i, j + 1) and (i + 1, j + 1), all of which the grid contains.
   std::array<float, 4> heights_of_four(int i, int j) const {
-    const Row lower(*this, j), upper(*this, j + 1);
+    const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
+    const auto row = static_cast<std::size_t>(tiles_x_);
+    const float* const* const lower = tiles_.data() + y / kTileCells * row;
+    const float* const* const upper = tiles_.data() + (y + 1) / kTileCells * row;
+    const std::size_t left = x / kTileCells, right = (x + 1) / kTileCells;
     const float floor = floor_mm();
-    return {std::max(floor, lower.kept(i)), std::max(floor, lower.kept(i + 1)),
-            std::max(floor, upper.kept(i)), std::max(floor, upper.kept(i + 1))};
+    return {std::max(floor, lower[left][offset_of_row(y) + offset_in_row(x)]),
+            std::max(floor, lower[right][offset_of_row(y) + offset_in_row(x + 1)]),
+            std::max(floor, upper[left][offset_of_row(y + 1) + offset_in_row(x)]),
+            std::max(floor, upper[right][offset_of_row(y + 1) + offset_in_row(x + 1)])};
   }
 
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
-    const int x = i % kTileCells, y = j % kTileCells;
-    constexpr int kFloats = kBlockX * kBlockY, kPerRow = kTileCells / kBlockX;
-    return static_cast<std::size_t>((y / kBlockY * kPerRow + x / kBlockX) * kFloats +
-                                    y % kBlockY * kBlockX + x % kBlockX);
+    return offset_of_row(static_cast<unsigned>(j)) + offset_in_row(static_cast<unsigned>(i));
   }
 
  private:
+  static std::size_t offset_of_row(unsigned j) {
+    constexpr unsigned kFloats = kBlockX * kBlockY, kPerRow = kTileCells / kBlockX;
+    const unsigned y = j % kTileCells;
+    return y / kBlockY * (kPerRow * kFloats) + y % kBlockY * kBlockX;
+  }
+  static std::size_t offset_in_row(unsigned i) {
+    const unsigned x = i % kTileCells;
+    return x / kBlockX * (kBlockX * kBlockY) + x % kBlockX;
+  }
   Box bounds_mm_;
   int nx_, ny_, tiles_x_;
   double cell_x_mm_, cell_y_mm_;

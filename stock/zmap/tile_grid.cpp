@@ -168,6 +168,29 @@ Box TileGrid::tile_box(std::size_t tile_index) const {
   return box;
 }
 
+std::array<std::uint32_t, 4> TileGrid::cut_ids_of_four(int i, int j) const {
+  std::array<std::uint32_t, 4> ids;
+  ids.fill(MeshPatch::kNotCut);
+  if (!keeps_cut_ids_) return ids;
+  constexpr unsigned kSide = kTileCells;
+  const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
+  if (x % kSide + 1 < kSide && y % kSide + 1 < kSide) {
+    const std::uint32_t* const ids_of_tile =
+        cut_ids(y / kSide * static_cast<std::size_t>(tiles_x_) + x / kSide);
+    return {ids_of_tile[offset(i, j)], ids_of_tile[offset(i + 1, j)], ids_of_tile[offset(i, j + 1)],
+            ids_of_tile[offset(i + 1, j + 1)]};
+  }
+  return {cut_id(i, j), cut_id(i + 1, j), cut_id(i, j + 1), cut_id(i + 1, j + 1)};
+}
+
+void TileGrid::read_cut_ids(int i, int j, bool along_x, std::span<std::uint32_t> out) const {
+  if (!keeps_cut_ids_) return std::fill(out.begin(), out.end(), MeshPatch::kNotCut);
+  for (std::uint32_t& id : out) {
+    id = cut_id(i, j);
+    (along_x ? i : j) += 1;
+  }
+}
+
 void TileGrid::keep_cut_ids(bool keep) {
   if (keep == keeps_cut_ids_) return;
   keeps_cut_ids_ = keep;

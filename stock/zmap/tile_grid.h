@@ -1,9 +1,11 @@
 // stock/zmap/tile_grid.h - heights in copy-on-write tiles.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/geometry.h"
@@ -47,8 +49,13 @@ class TileGrid {
     return cut_ids_of(tiles_[tile_index].get());
   }
   std::uint32_t cut_id(int i, int j) const {
-    return cut_ids(index(i / kTileCells, j / kTileCells))[offset(i, j)];
+    constexpr unsigned kSide = kTileCells;
+    const std::size_t row = static_cast<unsigned>(j) / kSide * static_cast<std::size_t>(tiles_x_);
+    return cut_ids(row + static_cast<unsigned>(i) / kSide)[offset(i, j)];
   }
+  /// As PresentHeights has them: MeshPatch::kNotCut where none are kept.
+  std::array<std::uint32_t, 4> cut_ids_of_four(int i, int j) const;
+  void read_cut_ids(int i, int j, bool along_x, std::span<std::uint32_t> out) const;
   std::size_t tile_bytes() const { return (keeps_cut_ids_ ? 2 : 1) * kTileFloats * sizeof(float); }
 
   /// Heights of row j, x = 0..nx-1.
@@ -78,9 +85,10 @@ class TileGrid {
 
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
-    const int x = i % kTileCells, y = j % kTileCells;
-    return static_cast<std::size_t>((y / kBlockY * kTileBlocksX + x / kBlockX) * kBlockFloats +
-                                    y % kBlockY * kBlockX + x % kBlockX);
+    const unsigned x = static_cast<unsigned>(i) % kTileCells;
+    const unsigned y = static_cast<unsigned>(j) % kTileCells;
+    return (y / kBlockY * kTileBlocksX + x / kBlockX) * kBlockFloats + y % kBlockY * kBlockX +
+           x % kBlockX;
   }
 
  private:

@@ -133,6 +133,14 @@ std::uint32_t ZMap::present_cut_id(int i, int j) const {
   return grid.keeps_cut_ids() ? grid.cut_id(i, j) : MeshPatch::kNotCut;
 }
 
+std::array<std::uint32_t, 4> ZMap::present_cut_ids_of_four(int i, int j) const {
+  return impl_->grid().cut_ids_of_four(i, j);
+}
+
+void ZMap::read_present_cut_ids(int i, int j, bool along_x, std::span<std::uint32_t> out) const {
+  impl_->grid().read_cut_ids(i, j, along_x, out);
+}
+
 bool ZMap::keeps_cut_ids() const { return impl_->grid().keeps_cut_ids(); }
 
 std::optional<std::uint32_t> ZMap::cut_id_at(const Vec3& point_mm) const {

@@ -90,6 +90,9 @@ class ZMap final : public StockModel,
   std::shared_ptr<const HeightGrid> height_grid() const override;
   std::optional<HeightGrid> present_heights() const override;
   std::uint32_t present_cut_id(int i, int j) const override;
+  std::array<std::uint32_t, 4> present_cut_ids_of_four(int i, int j) const override;
+  void read_present_cut_ids(int i, int j, bool along_x,
+                            std::span<std::uint32_t> out) const override;
   ColumnLayout column_layout() const override;
   bool has_heights_only() const override { return true; }
   std::uint64_t column_version(std::uint32_t tile) const override;

@@ -14,26 +14,21 @@ namespace {
 constexpr double kManyCells = 31;
 /// From where a cell is at it, a direction may be seen from so many sides of it.
 constexpr int kMostSpread = 12;
+/// The middles of so many equal parts of a width of 1.
+constexpr auto kPartsOfSpread = [] {
+  std::array<std::array<double, kMostSpread>, kMostSpread + 1> middles{};
+  for (std::size_t parts = 1; parts < middles.size(); ++parts) {
+    for (std::size_t part = 0; part < parts; ++part)
+      middles[parts][part] = (static_cast<double>(part) + 0.5) / static_cast<double>(parts) - 0.5;
+  }
+  return middles;
+}();
 /// Looking for where material ends, so many cells beyond the last in it.
 constexpr double kBeyond_cells = 1.5;
 /// So near to the rim, at least, is the cell before it.
 constexpr double kAtRim_cells = 2;
 /// From the deepest cell to the next one, so many places.
 constexpr int kDeepSteps = 4;
-
-/// atan2, right to 2e-5: a thousandth of the step between two directions.
-double direction_of(double y, double x) {
-  const double over = std::abs(y), out = std::abs(x);
-  const double part = std::min(over, out) / std::max({over, out, 1e-300}), square = part * part;
-  // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49.
-  double angle =
-      part *
-      (0.9998660 +
-       square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
-  if (over > out) angle = kPi / 2 - angle;
-  if (x < 0) angle = kPi - angle;
-  return y < 0 ? -angle : angle;
-}
 
 }  // namespace
 
@@ -44,84 +39,99 @@ bool EngagementScan::is_fine() const { return !is_flat() && radius_ >= kFineCell
 void EngagementScan::weigh_cells(double cell_mm) {
   if (cell_mm == weighed_mm_) return;
   weighed_mm_ = cell_mm;
-  weights_.resize(kLifts + 1);
+  for (std::vector<double>* each : {&weights_.height_rad, &weights_.thick_per_mm, &weights_.steps})
+    each->resize(kLifts + 1);
   for (std::size_t k = 0; k <= kLifts; ++k) {
     const double r = std::max(static_cast<double>(k) / lift_scale_, 0.25 * cell_mm);
     const double outer = std::min(r + 0.5 * cell_mm, radius_);
     const double inner = std::max(0.0, r - 0.5 * cell_mm), width = outer - inner;
     const double rise = lift_of(outer) - lift_of(inner);
     const double normal = width / std::hypot(width, rise);
-    weights_[k] = {rise * cell_mm / r, normal / kThinChip_mm,
-                   std::min(cell_mm / r, kPi) / CellFront::kStep};
-  }
-}
-
-/// Where cells are that have material over the cutter's surface: directions, for all of them first,
-/// as nothing in that depends on what the others have.
-void EngagementScan::place_cells(const Station& station, const CellFront& front,
-                                 CellBatch& cells) const {
-  const double least = 0.25 * front.across * cell_;
-  for (int n = 0; n < cells.count; ++n) {
-    const double x = cells.x[n], y = cells.y[n];
-    cells.radius[n] = std::max(cells.radius[n], least);
-    cells.ahead[n] = x * station.ahead.x + y * station.ahead.y;
-    cells.beside[n] = station.ahead.x * y - station.ahead.y * x;
-  }
-  for (int n = 0; n < cells.count; ++n) {
-    cells.step[n] =
-        (direction_of(cells.beside[n], cells.ahead[n]) + kPi / 2) * (1 / CellFront::kStep);
-    cells.under[n] = lift_of(std::abs(cells.beside[n]));
+    weights_.height_rad[k] = rise * cell_mm / r;
+    weights_.thick_per_mm[k] = normal / kThinChip_mm;
+    weights_.steps[k] = std::min(cell_mm / r, kPi) / CellFront::kStep;
   }
 }
 
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
-void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) const {
-  const double r = cells.radius[n], depth_mm = cells.depth[n], step = cells.step[n];
-  const CellWeight& weight = weights_[static_cast<std::size_t>(r * lift_scale_)];
-  const double share = std::min(1.0, weight.thick_per_mm * depth_mm) * weight.height_rad;
-  if (weight.steps <= 1) {
+void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) {
+  const double step = cells.step[n], share = cells.share[n], spread = cells.spread[n];
+  if (spread <= 1) {
     front.add(step, share);
   } else {
     // Near the middle a cell is seen in many directions.
-    const int parts = std::min(static_cast<int>(weight.steps) + 1, kMostSpread);
-    for (int part = 0; part < parts; ++part)
-      front.add(step + weight.steps * ((part + 0.5) / parts - 0.5), share / parts);
+    const int parts = std::min(static_cast<int>(spread) + 1, kMostSpread);
+    const double* const places = kPartsOfSpread[static_cast<std::size_t>(parts)].data();
+    const double each = share / parts;
+    for (int part = 0; part < parts; ++part) front.add(step + spread * places[part], each);
   }
   if (cells.ahead[n] < 0) return;
-  const Vec2 arm(cells.x[n], cells.y[n]);
-  const double beside = cells.beside[n];
-  FrontContact& contact = front.at[static_cast<std::size_t>(step + 0.5)];
-  contact.inner_mm = contact.radius_mm <= 0 ? r : std::min(contact.inner_mm, r);
-  contact.radius_mm = std::max(contact.radius_mm, r);
-  // At the blank's edge heights are taken no further than they go.
-  const double above_tip = std::min(depth_mm + cells.lift[n], front.most_above_tip_mm);
-  contact.deep_mm = std::max(contact.deep_mm, above_tip - cells.under[n]);
-  if (contact.deep_mm > front.deep_mm) front.deep_mm = contact.deep_mm, front.deepest = arm;
-  if (r > front.farthest_mm) front.farthest_mm = r, front.farthest = arm;
-  if (beside > front.left_mm) front.left_mm = beside, front.leftmost = arm;
-  if (beside < front.right_mm) front.right_mm = beside, front.rightmost = arm;
+  CellFront::Extent& extent = front.extent[static_cast<std::size_t>(step + 0.5)];
+  extent.inner_mm = std::min(extent.inner_mm, cells.radius[n]);
+  extent.outer_mm = std::max(extent.outer_mm, cells.radius[n]);
+  extent.deep_mm = std::max(extent.deep_mm, cells.deep[n]);
 }
 
-/// Leaves those cells that are over the surface, in the way and on no slope that it has cut.
+/// Of what is ahead, the first of those that are farther, or deeper, than all before.
+void EngagementScan::take_outermost(const CellBatch& cells, CellFront& front) {
+  const auto first_of = [&](const CellBatch::Each& each, double value) {
+    int n = 0;
+    while (each[n] != value || cells.ahead[n] < 0) ++n;
+    return Vec2(cells.x[n], cells.y[n]);
+  };
+  if (cells.most_deep > front.deep_mm)
+    front.deep_mm = cells.most_deep, front.deepest = first_of(cells.deep, cells.most_deep);
+  if (cells.most_radius > front.farthest_mm)
+    front.farthest_mm = cells.most_radius,
+    front.farthest = first_of(cells.radius, cells.most_radius);
+  if (cells.most_beside > front.left_mm)
+    front.left_mm = cells.most_beside, front.leftmost = first_of(cells.beside, cells.most_beside);
+  if (cells.least_beside < front.right_mm)
+    front.right_mm = cells.least_beside,
+    front.rightmost = first_of(cells.beside, cells.least_beside);
+}
+
+CellGround EngagementScan::ground_of(const Station& station, const CellRow& row) const {
+  CellGround ground;
+  ground.center_x = station.center.x, ground.center_y = station.center.y;
+  ground.ahead_x = station.ahead.x, ground.ahead_y = station.ahead.y;
+  ground.tip = row.tip, ground.film = kThinnestFilm_mm;
+  ground.radius = radius_, ground.wall_slope = kWallSlope;
+  ground.slope = row.slope;
+  return ground;
+}
+
+/// Leaves those cells that are in material, in the way and on no slope that it has cut.
 void EngagementScan::keep_over(const Station& station, const CellRow& row, CellBatch& cells) const {
-  for (int n = 0; n < cells.count; ++n) {
-    const double x = cells.x[n], y = cells.y[n];
-    cells.radius[n] = std::sqrt(x * x + y * y);
+  HeldWay held;
+  const bool has_closed_form = held_.slope == 0 || is_ball_;
+  if (held_.length > 0 && has_closed_form) {
+    held = {held_.start.x, held_.start.y, held_.direction.x, held_.direction.y, held_.length,
+            held_.z,       held_.slope,   held_.lean,        held_.lowest};
   }
-  for (int n = 0; n < cells.count; ++n) {
-    cells.lift[n] = lift_of(cells.radius[n]);
-    cells.depth[n] = row.tip + cells.lift[n] + kThinnestFilm_mm;
+  const CellGround ground = ground_of(station, row);
+  kernel_->take_cells(ground, way_end(station), held, lift_table(), cells);
+  const bool asks_each =
+      (held_.length > 0 && !has_closed_form) || own_until_ > 0 || (arc_ && station.is_near_end);
+  for (int n = 0; asks_each && n < cells.count; ++n) {
+    if (cells.depth[n] <= 0) continue;
+    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
+    double height = cells.height[n];
+    if (!has_closed_form) height = behind_held(middle, height);
+    if (own_until_ > 0) height = behind_itself(middle, height);
+    const bool is_on = is_on_way(station, middle);
+    cells.depth[n] = is_on ? height - (row.tip + cells.lift[n] + kThinnestFilm_mm) : -1;
+  }
+  for (int n = 0; own_ != nullptr && n < cells.count; ++n) {
+    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
+    const double surface = row.tip + cells.lift[n] + kThinnestFilm_mm;
+    if (cells.depth[n] > 0 && is_cut_by_own(middle, surface)) cells.depth[n] = -1;
   }
   int kept = 0;
   for (int n = 0; n < cells.count; ++n) {
-    const Vec2 arm(cells.x[n], cells.y[n]);
-    const double radius = cells.radius[n];
-    if (cells.height[n] <= cells.depth[n]) continue;
-    if (station.is_near_end && !is_on_way(station, station.center + arm)) continue;
-    if (row.slope > 0 && slope_of(radius) * glm::dot(arm, station.ahead) <= row.slope * radius)
-      continue;
-    cells.move(n, kept++);
+    cells.move(n, kept);
+    kept += cells.depth[n] > 0 ? 1 : 0;
   }
   cells.count = kept;
 }
@@ -130,24 +140,25 @@ void EngagementScan::keep_over(const Station& station, const CellRow& row, CellB
 void EngagementScan::take_batch(const Station& station, const CellRow& row, CellBatch& cells,
                                 CellFront& front) const {
   keep_over(station, row, cells);
-  int kept = 0;
-  for (int n = 0; n < cells.count; ++n) {
-    const Vec2 middle = station.center + Vec2(cells.x[n], cells.y[n]);
-    cells.height[n] = behind_held(middle, cells.height[n]);
-    if (own_until_ > 0) cells.height[n] = behind_itself(middle, cells.height[n]);
-  }
-  for (int n = 0; n < cells.count; ++n) {
-    const double surface = cells.depth[n];
-    cells.depth[n] = cells.height[n] - surface;
-    if (cells.depth[n] > 0 && own_ != nullptr &&
-        is_cut_by_own(station.center + Vec2(cells.x[n], cells.y[n]), surface))
-      continue;
-    if (cells.depth[n] > 0) cells.move(n, kept++);
-  }
-  cells.count = kept;
-  place_cells(station, front, cells);
+  const CellWeights weights{weights_.height_rad.data(), weights_.thick_per_mm.data(),
+                            weights_.steps.data()};
+  // At the blank's edge heights are taken no further than they go.
+  CellGround ground = ground_of(station, row);
+  ground.most_above_tip = front.most_above_tip_mm;
+  kernel_->place_cells(ground, lift_table(), weights, 0.25 * front.across * cell_,
+                       1 / CellFront::kStep, cells);
   for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
+  take_outermost(cells, front);
   cells.count = 0;
+}
+
+/// Where the heights of eight cells side by side begin, in blocks of kBlockX.
+static const float* of_eight(const HeightGrid& heights, int i, int j) {
+  static_assert(HeightGrid::kTileCells % HeightGrid::Row::kOfHighest == 0);
+  constexpr unsigned kSide = HeightGrid::kTileCells;
+  const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
+  return heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
+         HeightGrid::offset(i, j);
 }
 
 /// Cells of a row that are higher than what the cutter leaves anywhere near them. Of eight side by
@@ -156,12 +167,13 @@ void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells)
   const HeightGrid::Row heights(*heights_, row.j);
   constexpr int kOnce = HeightGrid::Row::kOfHighest;
   const double y2 = row.y * row.y;
-  const auto collect = [&](int i) {
-    const double x = row.x_of(i), height = static_cast<double>(heights.kept(i));
-    const auto k = static_cast<std::size_t>((x * x + y2) * row.to_part);
+  const double *const low_lift = low_lift_.data(), *const least_lift = least_lift_.data();
+  const auto collect = [&](int i, float kept) {
+    const double x = row.x_of(i), height = static_cast<double>(kept);
+    const int k = static_cast<int>((x * x + y2) * row.to_part);
     // No higher than the profile somewhat farther in.
     cells.x[cells.count] = x, cells.y[cells.count] = row.y, cells.height[cells.count] = height;
-    cells.count += height > row.tip + low_lift_[k] ? 1 : 0;
+    cells.count += height > row.tip + low_lift[k] ? 1 : 0;
   };
   const bool is_plain = each == 1 && row.last + kOnce < heights_->nx();
   for (int i = row.first; i <= row.last;) {
@@ -169,13 +181,22 @@ void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells)
     if (is_plain) {
       const double nearest = std::max({row.x_of(i), -row.x_of(end), 0.0});
       const double least =
-          row.tip + least_lift_[static_cast<std::size_t>((nearest * nearest + y2) * row.to_part)];
+          row.tip + least_lift[static_cast<int>((nearest * nearest + y2) * row.to_part)];
       if (static_cast<double>(heights.highest_from(i - i % kOnce)) <= least) {
         i = end + 1;
         continue;
       }
     }
-    for (; i <= end; i += each) collect(i);
+    if (!is_plain) {
+      for (; i <= end; i += each) collect(i, heights.kept(i));
+      continue;
+    }
+    const float* const kept = of_eight(*heights_, i - i % kOnce, row.j);
+    for (; i <= end; ++i) {
+      const int k = i % kOnce;
+      collect(i, kept[k / HeightGrid::kBlockX * (HeightGrid::kBlockX * HeightGrid::kBlockY) +
+                      k % HeightGrid::kBlockX]);
+    }
   }
 }
 
@@ -190,7 +211,8 @@ void EngagementScan::take_cells(const Station& station, CellFront& front) const 
   row.slope = rise_ > 0 ? rise_ / length_ : 0;
   row.to_part = kLifts / (radius_ * radius_);
   row.cell_x = cell_x, row.center_x = center.x;
-  CellBatch cells;
+  CellBatch& cells = cells_;
+  cells.count = 0;
   const auto row_at = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
   const int last_j = std::min(row_at(center.y + reach), heights_->ny() - 1);
   const int each = front.each, rows = front.rows;
@@ -262,6 +284,12 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
   front.most_above_tip_mm = heights_->bounds_mm().max.z - station.tip_z;
   weigh_cells(front.across * cell_);
   take_cells(station, front);
+  for (std::size_t k = 0; k < front.at.size(); ++k) {
+    const CellFront::Extent& extent = front.extent[k];
+    if (extent.outer_mm <= 0) continue;
+    front.at[k].inner_mm = extent.inner_mm, front.at[k].radius_mm = extent.outer_mm;
+    front.at[k].deep_mm = extent.deep_mm;
+  }
   FrontRays rays(kRays, radius_, false);
   double left_mm = front.left_mm, right_mm = front.right_mm;
   if (front.farthest_mm > 0) {

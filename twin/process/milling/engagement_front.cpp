@@ -50,11 +50,35 @@ constexpr int kDiscPlaces = 24;
 
 }  // namespace
 
+double EngagementScan::on_way_radius() const {
+  return radius_ + (length_ < kShort_cells * cell_ ? 0.5 * cell_ : 0);
+}
+
+/// As is_on_way() has it, of what is no arc.
+FrontEnd EngagementScan::way_end(const Station& station) const {
+  FrontEnd end;
+  end.is_near = station.is_near_end && !arc_;
+  end.x = station.end.x, end.y = station.end.y;
+  end.radius2 = on_way_radius() * on_way_radius();
+  end.along_x = direction_.x, end.along_y = direction_.y;
+  return end;
+}
+
+FrontGrid EngagementScan::front_grid() const {
+  const Box& box = heights_->bounds_mm();
+  return {box.min.x,
+          box.min.y,
+          heights_->cell_x_mm(),
+          heights_->cell_y_mm(),
+          static_cast<double>(heights_->nx()),
+          static_cast<double>(heights_->ny())};
+}
+
 /// It is going to be cut by the rest of the move; of one that is short, as others will follow, by
 /// about a cell more.
 bool EngagementScan::is_on_way(const Station& station, const Vec2& point) const {
   if (!station.is_near_end) return true;
-  const double most = radius_ + (length_ < kShort_cells * cell_ ? 0.5 * cell_ : 0);
+  const double most = on_way_radius();
   const Vec2 arm = point - station.end;
   if (glm::dot(arm, arm) < most * most) return true;
   return arc_ ? place_of(point).along <= sweep_ : glm::dot(arm, direction_) <= 0;
@@ -149,20 +173,23 @@ bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) con
   const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
   if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
   if (is_cut_by_own(point, z)) return true;
-  const auto is_low = [&](int x, int y) {
-    return static_cast<double>(heights_->height(x, y)) <= z + kThinnestFront_mm;
+  const float floor = heights_->floor_mm();
+  const auto is_low = [&](float kept) {
+    return static_cast<double>(std::max(floor, kept)) <= z + kThinnestFront_mm;
   };
+  const int last_x = std::min(heights_->nx() - 1, i + 1);
   std::uint32_t asked = MeshPatch::kNotCut;
   for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
-    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
-      if (!is_low(x, y)) continue;
+    const HeightGrid::Row row(*heights_, y);
+    for (int x = std::max(0, i - 1); x <= last_x; ++x) {
+      if (!is_low(row.kept(x))) continue;
       const std::uint32_t number = owners_->present_cut_id(x, y);
       if (number == asked || !ways_->knows(number)) continue;
       asked = number;
       if (ways_->covers(number, point, z, margin)) return true;
     }
   }
-  return asked == MeshPatch::kNotCut && is_low(i, j);
+  return asked == MeshPatch::kNotCut && is_low(heights_->height(i, j));
 }
 
 /// How high material stands over the end of the profile at the cutter's rim; 0: there is none.
@@ -183,13 +210,17 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
   const auto j = static_cast<int>(std::floor((point.y - box.min.y) / heights_->cell_y_mm()));
   if (i < 0 || j < 0 || i >= heights_->nx() || j >= heights_->ny()) return 0;
   if (!is_on_way(station, point)) return 0;
-  double highest = -kNeverEnds, lowest = kNeverEnds;
+  float highest_kept = -std::numeric_limits<float>::infinity(), lowest_kept = -highest_kept;
+  const int last_x = std::min(heights_->nx() - 1, i + 1);
   for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
-    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
-      const auto height = static_cast<double>(heights_->height(x, y));
-      highest = std::max(highest, height), lowest = std::min(lowest, height);
+    const HeightGrid::Row row(*heights_, y);
+    for (int x = std::max(0, i - 1); x <= last_x; ++x) {
+      const float kept = row.kept(x);
+      highest_kept = std::max(highest_kept, kept), lowest_kept = std::min(lowest_kept, kept);
     }
   }
+  const auto highest = static_cast<double>(std::max(heights_->floor_mm(), highest_kept));
+  const auto lowest = static_cast<double>(std::max(heights_->floor_mm(), lowest_kept));
   const double least = z + kThinnestFront_mm;
   if (highest <= least) return 0;
   const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0 || own_ != nullptr;
@@ -204,10 +235,13 @@ double EngagementScan::rim_height(const Station& station, double angle) const {
 /// wall goes through is as high as it is on one side of the wall; what those moves have left
 /// between their wall and the place counts where it is thicker than kThinnestFront_mm.
 double EngagementScan::left_at_wall(const Vec2& point, int i, int j, double height) const {
+  const float floor = heights_->floor_mm();
+  const int last_x = std::min(heights_->nx() - 1, i + 1);
   std::uint32_t asked = MeshPatch::kNotCut;
   for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
-    for (int x = std::max(0, i - 1); x <= std::min(heights_->nx() - 1, i + 1); ++x) {
-      if (static_cast<double>(heights_->height(x, y)) >= height) continue;
+    const HeightGrid::Row row(*heights_, y);
+    for (int x = std::max(0, i - 1); x <= last_x; ++x) {
+      if (static_cast<double>(std::max(floor, row.kept(x))) >= height) continue;
       const std::uint32_t number = owners_->present_cut_id(x, y);
       if (number == asked || !ways_->knows(number)) continue;
       asked = number;
@@ -222,11 +256,12 @@ double EngagementScan::left_at_wall(const Vec2& point, int i, int j, double heig
 double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
   double height = kNeverEnds, highest = -kNeverEnds;
   std::uint32_t asked = MeshPatch::kNotCut;
-  for (int n = 0; n < 4; ++n) {
-    const int x = i + n % 2, y = j + n / 2;
-    const auto own = static_cast<double>(heights_->height(x, y));
+  const std::array<float, 4> heights = heights_->heights_of_four(i, j);
+  const std::array<std::uint32_t, 4> numbers = owners_->present_cut_ids_of_four(i, j);
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const auto own = static_cast<double>(heights[n]);
     highest = std::max(highest, own);
-    const std::uint32_t number = owners_->present_cut_id(x, y);
+    const std::uint32_t number = numbers[n];
     if (!ways_->knows(number)) {
       height = std::min(height, own);
     } else if (number != asked) {
@@ -325,6 +360,66 @@ double EngagementScan::over_ray(const Ray& ray, double radius) const {
   return is_cut_by_own(point, ray.station->tip_z + lift_of(radius)) ? -kThinnestFilm_mm : depth;
 }
 
+/// As they are kept. Where all four are in one tile only the first is looked for.
+static void read_four(const HeightGrid& heights, RayPlaces& at, int k) {
+  constexpr unsigned kSide = HeightGrid::kTileCells, kX = HeightGrid::kBlockX,
+                     kY = HeightGrid::kBlockY, kBlock = kX * kY;
+  const auto x = static_cast<unsigned>(at.i[k]), y = static_cast<unsigned>(at.j[k]);
+  if (x % kSide == kSide - 1 || y % kSide == kSide - 1) {
+    const std::array<float, 4> four = heights.heights_of_four(at.i[k], at.j[k]);
+    for (std::size_t n = 0; n < four.size(); ++n) at.height[n][k] = four[n];
+    return;
+  }
+  const float* const first =
+      heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
+      HeightGrid::offset(at.i[k], at.j[k]);
+  const unsigned right = x % kX == kX - 1 ? kBlock - (kX - 1) : 1;
+  const unsigned up = y % kY == kY - 1 ? kSide / kX * kBlock - (kY - 1) * kX : kX;
+  at.height[0][k] = first[0], at.height[1][k] = first[right];
+  at.height[2][k] = first[up], at.height[3][k] = first[up + right];
+}
+
+/// The same of many radii at once.
+void EngagementScan::over_places(const Ray& ray, RayPlaces& at, int count) const {
+  const Station& station = *ray.station;
+  if (own_until_ > 0 || own_ != nullptr || (arc_ && station.is_near_end)) {
+    for (int k = 0; k < count; ++k) at.depth[k] = over_ray(ray, at.radius[k]);
+    return;
+  }
+  const FrontGrid grid = front_grid();
+  const RayLine line{station.center.x, station.center.y, ray.out.x, ray.out.y};
+  kernel_->lay_ray(grid, line, way_end(station), count, at);
+  for (int k = 0; k < count; ++k) read_four(*heights_, at, k);
+  RayGround ground;
+  ground.tip = std::max(station.tip_z, heights_->bounds_mm().min.z);
+  ground.film = kThinnestFilm_mm;
+  ground.floor = static_cast<double>(heights_->floor_mm());
+  ground.wall = kWallCells * cell_, ground.twist = kTwistCells * cell_;
+  ground.knows_owners = owners_ != nullptr, ground.has_held = held_.length > 0;
+  kernel_->look_along(grid, line, lift_table(), ground, count, at);
+  for (int k = 0; k < count; ++k) {
+    if (ray.slope > 0 && slope_of(at.radius[k]) * ray.ahead <= ray.slope)
+      at.depth[k] = -kThinnestFilm_mm;
+    else
+      at.depth[k] = over_place(ray, at, k) - kThinnestFilm_mm;
+  }
+}
+
+/// What is still to be asked of one of them.
+double EngagementScan::over_place(const Ray& ray, const RayPlaces& at, int k) const {
+  const double depth = at.depth[k];
+  if (at.state[k] == RayPlaces::kDone) return depth;
+  const Vec2 point(at.x[k], at.y[k]);
+  const double tip = std::max(ray.station->tip_z, heights_->bounds_mm().min.z);
+  if (at.state[k] == RayPlaces::kHeld) {
+    const double surface = tip + at.lift[k];
+    return behind_held(point, depth + surface) - surface;
+  }
+  if (at.state[k] == RayPlaces::kOwners)
+    return left_by_owners(point, at.i[k], at.j[k]) - tip - at.lift[k];
+  return over_surface(*ray.station, point);
+}
+
 EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle) const {
   const Vec2 left(-station.ahead.y, station.ahead.x);
   Ray ray;
@@ -353,6 +448,9 @@ void EngagementScan::lay_radii(int count) {
     at.height_mm = cutter_->height_mm(at.mm);
     if (k > 0) at.step = step_between(radii_[static_cast<std::size_t>(k - 1)].mm, at.mm);
   }
+  static_assert(kRadii + 1 <= RayPlaces::kMost && kFirstRadii + 1 <= RayPlaces::kMost);
+  for (int k = 0; k < RayPlaces::kMost; ++k)
+    places_.radius[k] = radii_[static_cast<std::size_t>(std::min(k, count))].mm;
 }
 
 /// How much the profile rises between two radii, and how much of a depth is normal to it.
@@ -369,10 +467,13 @@ double EngagementScan::reach_of(const Station& station) {
   const double near_mm = kNearMaterial * radius_;
   int farthest = -1;
   const double* const sines = quarter_sines<kFirstRadii>();
-  for (int n = 0; n <= kFirstRays; ++n) {
+  for (int k = 0; k < RayPlaces::kMost; ++k)
+    first_places_.radius[k] = radius_of(sines[std::min(k, kFirstRadii)]) * (1 - kSameRadius);
+  for (int n = 0; n <= kFirstRays && farthest < kFirstRadii; ++n) {
     const Ray ray = ray_at(station, kPi * (static_cast<double>(n) / kFirstRays - 0.5) * 0.99);
+    over_places(ray, first_places_, kFirstRadii + 1);
     for (int k = kFirstRadii; k > farthest; --k) {
-      if (over_ray(ray, radius_of(sines[k]) * (1 - kSameRadius)) > -near_mm) farthest = k;
+      if (first_places_.depth[k] > -near_mm) farthest = k;
     }
   }
   const bool is_all = farthest < 0 || farthest + 1 >= kFirstRadii;
@@ -407,13 +508,14 @@ EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, Ray
 /// Places along one direction, from the inside out. What is thinner than radii are apart lies about
 /// the place that is nearest to material.
 void EngagementScan::look_along(const Ray& ray) {
-  along_.clear();
+  over_places(ray, places_, static_cast<int>(radii_.size()));
+  along_.resize(radii_.size());
   std::size_t nearest = 0;
-  for (const RayRadius& at : radii_) {
-    along_.push_back({at.mm, over_ray(ray, at.mm), &at});
-    if (along_.back().depth > along_[nearest].depth) nearest = along_.size() - 1;
+  double depth = places_.depth[0];
+  for (std::size_t k = 0; k < radii_.size(); ++k) {
+    along_[k] = {radii_[k].mm, places_.depth[k], &radii_[k]};
+    if (places_.depth[k] > depth) depth = places_.depth[k], nearest = k;
   }
-  const double depth = along_[nearest].depth;
   if (depth > 0 || depth < -kNearMaterial * radius_) return;
   for (std::size_t k = std::min(nearest + 1, along_.size() - 1); k >= nearest && k > 0; --k) {
     const double radius = 0.5 * (along_[k - 1].radius + along_[k].radius);
@@ -438,11 +540,11 @@ void EngagementScan::round_contact(const Station& station, double angle, FrontCo
   for (std::size_t k = 0; k < along_.size(); ++k) {
     const RayPlace& at = along_[k];
     if (at.depth > 0) {
-      const double lowest = cutter_->height_mm(at.radius * sine);
       const double surface = at.at != nullptr ? at.at->height_mm : cutter_->height_mm(at.radius);
       // At the blank's edge heights are taken further than they go.
       const double above_tip = std::min(at.depth + surface, most_above_tip);
-      found.deep_mm = std::max(found.deep_mm, above_tip - lowest);
+      if (above_tip > found.deep_mm)
+        found.deep_mm = std::max(found.deep_mm, above_tip - cutter_->height_mm(at.radius * sine));
       if (k == 0) inner = at.radius;
       outer = at.radius;
     }

@@ -19,8 +19,6 @@ constexpr double kStagger = 0.618;
 /// Narrowings of where a cutter on a slope was lowest.
 constexpr int kHeldSteps = 10;
 constexpr double kHeldSlack_mm = 0.0005;
-/// What rises by more for each mm is a wall of the cutter, where the lower end counts.
-constexpr double kWallSlope = 4;
 /// Lanes at the cutter's sides are so many cells within it.
 constexpr double kRimCells = 0.5;
 

@@ -17,6 +17,7 @@
 #include "stock/stock_model.h"
 #include "surface/height_grid.h"
 #include "twin/process/engagement.h"
+#include "twin/process/milling/front_kernel.h"
 #include "twin/process/milling/front_rays.h"
 #include "twin/process/milling/past_ways.h"
 #include "twin/process/milling/upright_arc.h"
@@ -46,6 +47,8 @@ class EngagementScan {
   static constexpr double kFineCells = 12;
 
   static bool takes(const Cutter& cutter, const CutMove& move);
+  /// One of front_kernels(); without it, the first of them.
+  void use(const FrontKernel& kernel) { kernel_ = &kernel; }
 
   struct Cost {
     double looks = 0;   ///< heights that were looked at
@@ -193,6 +196,8 @@ class EngagementScan {
   static constexpr double kThinChip_mm = 0.05;
   /// Directions to begin with, from one side to the other.
   static constexpr int kRays = FrontRays::kMost;
+  /// What rises by more for each mm is a wall of the cutter, where the lower end counts.
+  static constexpr double kWallSlope = 4;
   /// Rounding of the cutter's own radius.
   static constexpr double kSameRadius = 1e-9;
   /// The cutter at one place.
@@ -203,6 +208,10 @@ class EngagementScan {
     double tip_z = 0;
   };
   void set_held(const CutMove* held);
+  FrontGrid front_grid() const;
+  double on_way_radius() const;
+  FrontEnd way_end(const Station& station) const;
+  LiftTable lift_table() const { return {lift_.data(), lift_scale_, double{kLifts}}; }
   double material_at(const Station& station, const Vec2& point, double least_radius,
                      bool at_rim) const;
   double rim_height(const Station& station, double angle) const;
@@ -256,6 +265,8 @@ class EngagementScan {
     RayPlace in;
   };
   RayEdge edge_on(const Ray& ray, RayPlace in, RayPlace free) const;
+  void over_places(const Ray& ray, RayPlaces& at, int count) const;
+  double over_place(const Ray& ray, const RayPlaces& at, int k) const;
   void look_along(const Ray& ray);
   void round_contact(const Station& station, double angle, FrontContact& found);
   double profile_mm(double radius) const;
@@ -267,6 +278,11 @@ class EngagementScan {
     double across = 1;       ///< so many cells wide is what it stands for
     std::array<FrontContact, kSteps + 1> at{};
     std::array<double, kSteps + 1> share{};  ///< of the height, times the angle
+    /// Of what there is in a direction: the nearest, the farthest, and the deepest.
+    struct Extent {
+      double inner_mm = std::numeric_limits<double>::infinity(), outer_mm = 0, deep_mm = 0;
+    };
+    std::array<Extent, kSteps + 1> extent{};
     /// Seen from the cutter's middle.
     double farthest_mm = 0, left_mm = -std::numeric_limits<double>::infinity(),
            right_mm = std::numeric_limits<double>::infinity();
@@ -277,26 +293,11 @@ class EngagementScan {
     /// What lies between two steps is shared by them.
     void add(double step, double height_rad) {
       if (step < 0 || step >= kSteps) return;
-      const auto low = static_cast<std::size_t>(step);
-      const double beyond = step - static_cast<double>(low);
-      share[low] += height_rad * (1 - beyond);
-      share[low + 1] += height_rad * beyond;
-    }
-  };
-  /// Cells before the cutter, seen from its middle. There are kManyCells * sqrt(2) at most to
-  /// either side of that in a row.
-  struct CellBatch {
-    static constexpr int kMost = 256;
-    using Each = std::array<double, kMost>;
-    int count = 0;
-    Each x, y, height;
-    Each radius, lift;         ///< of their places, and the cutter's surface there over its tip
-    Each depth;                ///< at first the surface, then how deep it is in material
-    Each ahead, beside, step;  ///< along and beside the way, and the direction
-    Each under;                ///< what the cutter leaves there, over its tip
-    void move(int from, int to) {
-      x[to] = x[from], y[to] = y[from], height[to] = height[from];
-      radius[to] = radius[from], lift[to] = lift[from], depth[to] = depth[from];
+      const int low = static_cast<int>(step);
+      const double beyond = step - low;
+      double* const at_low = share.data() + low;
+      at_low[0] += height_rad * (1 - beyond);
+      at_low[1] += height_rad * beyond;
     }
   };
   /// Cells of a row, seen from the cutter's middle.
@@ -308,10 +309,11 @@ class EngagementScan {
     double x_of(int i) const { return (i + 0.5) * cell_x - center_x; }
   };
   bool is_fine() const;
+  CellGround ground_of(const Station& station, const CellRow& row) const;
   void collect_row(const CellRow& row, int each, CellBatch& cells) const;
   void keep_over(const Station& station, const CellRow& row, CellBatch& cells) const;
-  void place_cells(const Station& station, const CellFront& front, CellBatch& cells) const;
-  void take_cell(const CellBatch& cells, int n, CellFront& front) const;
+  static void take_cell(const CellBatch& cells, int n, CellFront& front);
+  static void take_outermost(const CellBatch& cells, CellFront& front);
   void take_batch(const Station& station, const CellRow& row, CellBatch& cells,
                   CellFront& front) const;
   void take_cells(const Station& station, CellFront& front) const;
@@ -322,8 +324,9 @@ class EngagementScan {
   /// How high over its tip the cutter's surface is.
   double lift_of(double radius) const {
     const double scaled = std::min(radius * lift_scale_, double{kLifts});
-    const auto k = static_cast<std::size_t>(scaled);
-    return lift_[k] + (scaled - static_cast<double>(k)) * (lift_[k + 1] - lift_[k]);
+    const int k = static_cast<int>(scaled);
+    const double* const lift = lift_.data() + k;
+    return lift[0] + (scaled - k) * (lift[1] - lift[0]);
   }
   /// How much it rises there for each mm of the radius.
   double slope_of(double radius) const {
@@ -338,7 +341,10 @@ class EngagementScan {
   std::vector<RayPlace> along_;     ///< one direction of it
   std::vector<RayRadius> radii_;    ///< along it
   double laid_reach_ = -1;          ///< for which they are
-  Motion motion_;                   ///< of arcs
+  const FrontKernel* kernel_ = &front_kernels().front();
+  mutable RayPlaces places_{}, first_places_{};  ///< of radii_, and of the first radii
+  mutable CellBatch cells_{};
+  Motion motion_;  ///< of arcs
   bool arc_ = false;
   bool is_ball_ = false;
   double radius_ = 0, flat_radius_ = 0;
@@ -356,10 +362,10 @@ class EngagementScan {
   double lift_scale_ = 0;
   /// What a cell in material adds: height times angle; for each mm of its depth, so much of that
   /// counts as is no thin chip; and over how many steps of directions it is seen.
-  struct CellWeight {
-    double height_rad = 0, thick_per_mm = 1, steps = 1;
+  struct Weights {
+    std::vector<double> height_rad, thick_per_mm, steps;
   };
-  std::vector<CellWeight> weights_;
+  Weights weights_;
   double weighed_mm_ = 0;           ///< for cells of that size
   std::vector<double> low_lift_;    ///< no more than that, over even steps of the radius' square
   std::vector<double> least_lift_;  ///< .. and no more than that from there on out

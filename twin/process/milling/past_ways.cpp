@@ -59,6 +59,7 @@ void PastWays::clear() {
   uprights_.clear();
   tools_.clear();
   last_.clear();
+  lines_.clear();
   tool_ = 0;
 }
 
@@ -178,17 +179,16 @@ double PastWays::height_mm(std::uint32_t number, const Vec2& point, double margi
   if (number >= last_.size()) return low;
   int asked = 0;
   for (std::uint32_t n = last_[number]; n != kNone && asked < kMostOfOne; n = ways_[n].before) {
-    const Way& way = ways_[n];
-    const Tool& tool = tools_[tool_of(n)];
-    low = std::min(low, height_of(way, tool, point, margin_mm));
+    low = std::min(low, height_of(n, tools_[tool_of(n)], point, margin_mm));
     ++asked;
   }
   return low;
 }
 
-double PastWays::height_of(const Way& way, const Tool& tool, const Vec2& point,
+double PastWays::height_of(std::uint32_t number, const Tool& tool, const Vec2& point,
                            double margin_mm) const {
-  if (way.arc == kNone) return line_height(way, tool, point, margin_mm);
+  const Way& way = ways_[number];
+  if (way.arc == kNone) return line_height(number, tool, point, margin_mm);
   return way.arc < kUpright ? arc_height(way, tool, point, margin_mm)
                             : upright_height(way, tool, point, margin_mm);
 }
@@ -199,13 +199,27 @@ double PastWays::upright_height(const Way& way, const Tool& tool, const Vec2& po
   return uprights_[way.arc - kUpright].lowest_over(point, 0, 1, tool.radius_mm + margin_mm, lift);
 }
 
-double PastWays::line_height(const Way& way, const Tool& tool, const Vec2& point,
+const PastWays::Line& PastWays::line_of(std::uint32_t way) const {
+  if (lines_.empty()) lines_.resize(kLines);
+  Line& line = lines_[way % kLines];
+  if (line.way == way) return line;
+  const Way& of = ways_[way];
+  line.way = way;
+  line.from = Vec2(static_cast<double>(of.from[0]), static_cast<double>(of.from[1]));
+  line.along = Vec2(static_cast<double>(of.to[0]), static_cast<double>(of.to[1])) - line.from;
+  line.z = static_cast<double>(of.from[2]), line.rise = static_cast<double>(of.to[2]) - line.z;
+  line.length2 = glm::dot(line.along, line.along), line.length = std::sqrt(line.length2);
+  line.slope = line.length > 0 ? line.rise / line.length : 0;
+  line.steepness = std::hypot(1.0, line.slope);
+  return line;
+}
+
+double PastWays::line_height(std::uint32_t way, const Tool& tool, const Vec2& point,
                              double margin_mm) const {
-  const Vec2 from(static_cast<double>(way.from[0]), static_cast<double>(way.from[1]));
-  const Vec2 along = Vec2(static_cast<double>(way.to[0]), static_cast<double>(way.to[1])) - from;
-  const auto z = static_cast<double>(way.from[2]), rise = static_cast<double>(way.to[2]) - z;
-  const Vec2 arm = point - from;
-  const double length2 = glm::dot(along, along), radius = tool.radius_mm + margin_mm;
+  const Line& line = line_of(way);
+  const Vec2 along = line.along, arm = point - line.from;
+  const double z = line.z, rise = line.rise, length2 = line.length2;
+  const double radius = tool.radius_mm + margin_mm;
   const double nearest = length2 > 0 ? glm::dot(arm, along) / length2 : 0;
   const auto surface = [&](double t) {
     const double distance = glm::length(arm - t * along);
@@ -218,14 +232,13 @@ double PastWays::line_height(const Way& way, const Tool& tool, const Vec2& point
   const Vec2 beside = arm - nearest * along;
   const double half2 = radius * radius - glm::dot(beside, beside);
   if (half2 < 0) return kNotThere;
-  const double length = std::sqrt(length2), half = std::sqrt(half2) / length;
+  const double half = std::sqrt(half2) / line.length;
   const double first = std::max(0.0, nearest - half), last = std::min(1.0, nearest + half);
   if (first > last) return kNotThere;
   if (tool.is_flat) return z + rise * (rise < 0 ? last : first);
   // A ball is lowest where its sphere, cut along the way, leans as the way does.
-  const double slope = rise / length;
   if (tool.is_ball)
-    return surface(std::clamp(nearest - slope * half / std::hypot(1.0, slope), first, last));
+    return surface(std::clamp(nearest - line.slope * half / line.steepness, first, last));
   return golden_section(surface, first, last, kHeightSteps).least;
 }
 

@@ -93,13 +93,26 @@ class PastWays {
                    double margin_mm) const;
   bool arc_covers(const Way& way, const Tool& tool, const Vec2& point, double z_mm,
                   double margin_mm) const;
-  double line_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
+  double line_height(std::uint32_t way, const Tool& tool, const Vec2& point,
+                     double margin_mm) const;
   double arc_height(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
   double upright_height(const Way& way, const Tool& tool, const Vec2& point,
                         double margin_mm) const;
-  double height_of(const Way& way, const Tool& tool, const Vec2& point, double margin_mm) const;
+  double height_of(std::uint32_t number, const Tool& tool, const Vec2& point,
+                   double margin_mm) const;
+
+  /// A straight way, and what about it is the same at all points: the last ones that were asked.
+  struct Line {
+    std::uint32_t way = kNone;
+    Vec2 from{0}, along{0};
+    double z = 0, rise = 0, length2 = 0, length = 0;
+    double slope = 0, steepness = 1;  ///< rise for each mm, and the hypotenuse of that and 1
+  };
+  static constexpr std::size_t kLines = 128;
+  const Line& line_of(std::uint32_t way) const;
 
   GrowingList<Way> ways_;
+  mutable std::vector<Line> lines_;
   std::vector<Mount> mounts_;
   std::vector<Arc> arcs_;
   std::vector<UprightArc> uprights_;

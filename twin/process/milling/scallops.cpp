@@ -22,15 +22,16 @@ void ScallopScan::read(bool is_row, int line) {
   const int count = is_row ? heights_.nx() : heights_.ny();
   z_.resize(static_cast<std::size_t>(count));
   tool_of_.resize(z_.size());
+  numbers_.resize(z_.size());
+  owners_.read_present_cut_ids(is_row ? 0 : line, is_row ? line : 0, is_row, numbers_);
   std::uint32_t last = MeshPatch::kNotCut;
   int tool = -1;
-  for (int k = 0; k < count; ++k) {
-    const int i = is_row ? k : line, j = is_row ? line : k;
-    z_[static_cast<std::size_t>(k)] = static_cast<double>(heights_.height(i, j));
-    const std::uint32_t number = owners_.present_cut_id(i, j);
-    if (number != last) tool = ways_.round_tool_of(number);
-    last = number;
-    tool_of_[static_cast<std::size_t>(k)] = tool;
+  for (std::size_t k = 0; k < z_.size(); ++k) {
+    const auto at = static_cast<int>(k);
+    z_[k] = static_cast<double>(is_row ? heights_.height(at, line) : heights_.height(line, at));
+    if (numbers_[k] != last) tool = ways_.round_tool_of(numbers_[k]);
+    last = numbers_[k];
+    tool_of_[k] = tool;
   }
 }
 

@@ -59,9 +59,10 @@ class ScallopScan {
   const PresentHeights& owners_;
   const PastWays& ways_;
   double edge_mm_ = 0;
-  std::vector<double> z_;     ///< of the line
-  std::vector<int> tool_of_;  ///< by cell of the line; -1: none, or a flat one
-  std::vector<Found> found_;  ///< by tool
+  std::vector<double> z_;               ///< of the line
+  std::vector<std::uint32_t> numbers_;  ///< of moves, by cell of the line
+  std::vector<int> tool_of_;            ///< by cell of the line; -1: none, or a flat one
+  std::vector<Found> found_;            ///< by tool
 };
 
 }  // namespace kerf

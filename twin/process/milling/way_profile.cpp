@@ -61,6 +61,7 @@ double way_length_mm(const CutMove& move) {
 }
 
 CutMove part_of(const CutMove& whole, double from, double to) {
+  if (from == 0 && to == 1) return whole;
   const Motion motion = motion_of(whole);
   CutMove part = whole;
   if (from > 0) part.from_mm = point_at(motion, from);
