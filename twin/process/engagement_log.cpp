@@ -141,12 +141,16 @@ void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, d
   }
   EngagementSums& sums = passes_[pass].sums;
   sums.removed_mm3 += mm3;
-  if (window_.pass != pass) window_ = {pass, 0, 0, 0};
-  window_.mm3 += std::min(mm3, most_mm3);
+  if (window_.pass != pass) {
+    window_ = {};
+    window_.pass = pass;
+  }
+  window_.mm3 += mm3, window_.most_mm3 += most_mm3;
   window_.mm += way_mm, window_.seconds += seconds;
   const double least_mm = kWindowOfDiameter * tools_[tool_of_pass_[pass]].diameter_mm;
   if (window_.mm < least_mm || window_.seconds <= 0) return;
-  sums.rate_most_mm3_per_s = std::max(sums.rate_most_mm3_per_s, window_.mm3 / window_.seconds);
+  sums.rate_most_mm3_per_s =
+      std::max(sums.rate_most_mm3_per_s, std::min(window_.mm3, window_.most_mm3) / window_.seconds);
   window_ = {};
 }
 

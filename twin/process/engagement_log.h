@@ -39,6 +39,7 @@ class EngagementLog {
 
   /// It hears of all that is told. Outlives the log.
   void tell(EngagementListener& listener) { listener_ = &listener; }
+  bool is_heard() const { return listener_ != nullptr; }
 
   /// Forgets all, for another run over `stock`, which has not been cut.
   void begin(const StockModel& stock);
@@ -104,7 +105,7 @@ class EngagementLog {
   /// Moves of a pass whose removal is known, until they are long enough for a rate.
   struct Window {
     std::uint32_t pass = kNoPass;
-    double mm3 = 0, mm = 0, seconds = 0;
+    double mm3 = 0, most_mm3 = 0, mm = 0, seconds = 0;
   } window_;
   double unmeasured_mm_ = 0, unmeasured_mm3_ = 0;
 };

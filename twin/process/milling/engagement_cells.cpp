@@ -147,6 +147,12 @@ void EngagementScan::take_batch(const Station& station, const CellRow& row, Cell
   ground.most_above_tip = front.most_above_tip_mm;
   kernel_->place_cells(ground, lift_table(), weights, 0.25 * front.across * cell_,
                        1 / CellFront::kStep, cells);
+  for (int n = 0; fresh_mm_ > 0 && n < cells.count; ++n) {
+    const auto k = static_cast<std::size_t>(cells.radius[n] * lift_scale_);
+    const double thick = weights_.thick_per_mm[k], ahead = cells.ahead[n] / cells.radius[n];
+    const double counts = thick * of_thin_chips(thick * kThinChip_mm, ahead);
+    cells.share[n] = std::min(1.0, counts * cells.depth[n]) * weights_.height_rad[k];
+  }
   for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
   take_outermost(cells, front);
   cells.count = 0;

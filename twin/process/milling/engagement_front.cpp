@@ -492,6 +492,14 @@ double EngagementScan::counted(double from_mm, double to_mm) {
   return (sum(to_mm) - sum(from_mm)) / (to_mm - from_mm);
 }
 
+/// What a chip's thickness there is multiplied by, to count as kThinChip_mm where it counts in
+/// full.
+double EngagementScan::of_thin_chips(double normal, double ahead) const {
+  if (fresh_mm_ <= 0) return 1;
+  const double whole_mm = fresh_mm_ * std::sqrt(std::max(0.0, 1 - normal * normal)) * ahead;
+  return kThinChip_mm / std::clamp(0.5 * whole_mm, kThinnestChip_mm, kThinChip_mm);
+}
+
 /// Where, between a radius in material and one in none, it ends.
 EngagementScan::RayEdge EngagementScan::edge_on(const Ray& ray, RayPlace in, RayPlace free) const {
   const auto between = [&] {
@@ -534,7 +542,8 @@ void EngagementScan::round_contact(const Station& station, double angle, FrontCo
     const bool is_laid = from.at != nullptr && to.at == from.at + 1;
     const RayStep step = is_laid ? to.at->step : step_between(from.radius, to.radius);
     if (step.width_mm <= 0) return;
-    found.high_mm += step.rise_mm * counted(step.normal * from.depth, step.normal * to.depth);
+    const double thick = step.normal * of_thin_chips(step.normal, ray.ahead);
+    found.high_mm += step.rise_mm * counted(thick * from.depth, thick * to.depth);
   };
   double inner = -1, outer = -1;
   for (std::size_t k = 0; k < along_.size(); ++k) {
@@ -637,6 +646,7 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   own_until_ = arc_ ? asked.at * sweep_ - std::min(kPi, 2 * radius_ / arc_radius_) : 0;
   // What stands right before it is removed next.
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
+  fresh_mm_ = asked.behind_mm > 0 ? asked.behind_mm + ahead_mm : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
   if (asked.is_brief && is_fine()) {
     EngagementLook look = look_by_cells(station, asked.anticlockwise);

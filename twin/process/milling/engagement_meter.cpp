@@ -23,9 +23,11 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
 constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 100'000, kShareOfCells = 0.25;
-/// Of a look, one in brief: by its cells, and of coarse ones.
-constexpr double kBrief = 0.15, kCoarseBrief = 0.4;
+/// Of a look, one in brief: by its cells, and of coarse ones; and where it sees nothing.
+constexpr double kBrief = 0.15, kCoarseBrief = 0.4, kOfAir = 0.1;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
+/// So many in brief are free, that a short program has them.
+constexpr int kFreeLooks = 100;
 /// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
 /// Where air that was seen is asked whether it still is: parts of the radius, and directions.
@@ -58,7 +60,11 @@ bool is_steep(const CutMove& move) {
 
 EngagementMeter::EngagementMeter(const StockModel& stock, EngagementLog& log,
                                  std::function<void()> hand_over)
-    : stock_(stock), log_(log), hand_over_(std::move(hand_over)) {
+    : stock_(stock),
+      log_(log),
+      hand_over_(std::move(hand_over)),
+      free_looks_(kFreeLooks),
+      is_thrifty_(!log.is_heard()) {
   log_.begin(stock);
 }
 
@@ -103,6 +109,7 @@ EngagementLook EngagementMeter::look(double at) {
   ahead.anticlockwise = anticlockwise_;
   ahead.owners = owners_, ahead.ways = &ways_;
   ahead.is_brief = is_brief_;
+  ahead.behind_mm = is_short_ ? at * length_mm_ : 0;
   // Under its centre it never comes back to where it was lower; and as long as it goes one way
   // nothing before a rim has been nearer, nor before a ball no larger than the arc.
   const bool is_behind =
@@ -215,8 +222,15 @@ bool EngagementMeter::counts_still(const CutMove& move) {
   const double way_mm = since_mm_ + length_mm_;
   if (way_mm > kFarthestSpacing * diameter_mm_) return false;
   if (glm::dot(way_of_short(move), last_ahead_) < kSameWay)
-    return saved_cells_ < -kMostBorrowed * look_cells_;
-  return way_mm <= spacing_mm_ || saved_cells_ < 0;
+    return is_thrifty_ && saved_cells_ < -kMostBorrowed * look_cells_;
+  if (way_mm <= spacing_mm_ || !is_thrifty_) return way_mm <= spacing_mm_;
+  // Of a tool that comes in, or whose looks differ, the last one says little.
+  const bool is_settled = spacing_mm_ > farthest_mm();
+  if (saved_cells_ >= (is_settled ? 0 : -kMostBorrowed * look_cells_)) return false;
+  if (free_looks_ == 0) return true;
+  --free_looks_;
+  saved_cells_ += kBrief * look_cells_;
+  return false;
 }
 
 /// At one of a few places ahead of the tool, where the move ends. Moves before it may not have been
@@ -292,6 +306,10 @@ void EngagementMeter::take_upright(double farthest_mm) {
   }
 }
 
+double EngagementMeter::farthest_mm() const {
+  return std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
+}
+
 double EngagementMeter::closest_mm() const {
   return std::max(kClosestOfDiameter * diameter_mm_, kClosestCells * stock_.cell_mm());
 }
@@ -318,10 +336,9 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     return taken_;
   }
   const bool steep = is_steep(move);
-  const double farthest =
-      std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
-  const bool is_short = length_mm_ < farthest && turnings_.empty();
-  if (is_short && !steep && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
+  const double farthest = farthest_mm();
+  is_short_ = length_mm_ < farthest && turnings_.empty() && !steep;
+  if (is_short_ && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
     add(0, 1, last_);
     flush();
@@ -342,13 +359,15 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     add(0, 1 - part, {});
     if (part > 0) add(1 - part, 1, down);
     since_mm_ = -1;
-  } else if (is_short) {
+  } else if (is_short_) {
     const EngagementLook before = last_;
     // Often in brief is better than seldom.
     is_brief_ = saved_cells_ < look_cells_;
     last_ = look(0.5);
     const bool is_fine = cutter_->radius_mm() >= EngagementScan::kFineCells * stock_.cell_mm();
-    saved_cells_ -= look_cells_ * (!is_brief_ ? 1 : is_fine ? kBrief : kCoarseBrief);
+    const double cost = look_cells_ * (!is_brief_ ? 1 : is_fine ? kBrief : kCoarseBrief);
+    saved_cells_ -= last_.is_engaged() ? cost : kOfAir * cost;
+    saved_cells_ = std::max(saved_cells_, -(kMostBorrowed + 1) * look_cells_);
     is_brief_ = false;
     const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
     spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;

@@ -29,7 +29,9 @@ namespace kerf {
 /// told turn by kUprightPart_rad at most. Others are told as unmeasured. One thread.
 class EngagementMeter {
  public:
-  /// `hand_over`: gives all moves before to the model. Both outlive this.
+  /// `hand_over`: gives all moves before to the model. Both outlive this. Where somebody hears the
+  /// log, who goes by each of its parts, it looks at short moves as often as they want it, whatever
+  /// that costs.
   EngagementMeter(const StockModel& stock, EngagementLog& log, std::function<void()> hand_over);
 
   /// Each part of a feed move that is told to the log is told to this one, too.
@@ -91,6 +93,7 @@ class EngagementMeter {
   void take_upright(double farthest_mm);
   void tell(const EngagementLook& mean, double from, double to);
   double most_mm2(const EngagementLook& look, double down_rad) const;
+  double farthest_mm() const;
   double closest_mm() const;
   void flush();
   EngagementLook look(double at);
@@ -113,9 +116,12 @@ class EngagementMeter {
   EngagementLook last_;
   double since_mm_ = 0;    ///< way since last_ was looked at; negative: it counts for nothing
   bool is_brief_ = false;  ///< the look that comes
+  bool is_short_ = false;  ///< the present move
   double saved_cells_ = 0, look_cells_ = 0;
-  double spacing_mm_ = 0;  ///< as far as it counts
-  Vec3 last_ahead_{0};     ///< the way of the move that it was looked at on
+  int free_looks_ = 0;
+  bool is_thrifty_ = true;  ///< looks at short moves may not cost much
+  double spacing_mm_ = 0;   ///< as far as it counts
+  Vec3 last_ahead_{0};      ///< the way of the move that it was looked at on
   // The present move.
   const Cutter* cutter_ = nullptr;
   const CutMove* move_ = nullptr;

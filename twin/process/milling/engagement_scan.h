@@ -84,6 +84,9 @@ class EngagementScan {
     const PastWays* ways = nullptr;
     /// Of what is not flat, by its cells, or (where these are coarse) by a third of the radii.
     bool is_brief = false;
+    /// So far before the place the tool has stood last, and has taken what is behind its surface
+    /// there; 0: that is no concern.
+    double behind_mm = 0;
     /// An arc that the move touches at that part of its way: the heights have it not yet, and what
     /// it has gone through it has removed.
     const UprightArc* own = nullptr;
@@ -194,6 +197,9 @@ class EngagementScan {
   static constexpr double kThinnestFilm_mm = 2e-4;
   /// A chip that is thinner counts by its thickness: it is next to nothing.
   static constexpr double kThinChip_mm = 0.05;
+  /// .. or, where the tool stood so near before that no thicker one can be, than half of what would
+  /// be there; but surfaces between heights are no better known than that.
+  static constexpr double kThinnestChip_mm = 0.005;
   /// Directions to begin with, from one side to the other.
   static constexpr int kRays = FrontRays::kMost;
   /// What rises by more for each mm is a wall of the cutter, where the lower end counts.
@@ -243,6 +249,7 @@ class EngagementScan {
   double over_ray(const Ray& ray, double radius) const;
   double radius_of(double quarter_sine) const;
   double reach_of(const Station& station);
+  double of_thin_chips(double normal, double ahead) const;
   static double counted(double from_mm, double to_mm);
   /// From one radius to another one.
   struct RayStep {
@@ -348,8 +355,9 @@ class EngagementScan {
   bool arc_ = false;
   bool is_ball_ = false;
   double radius_ = 0, flat_radius_ = 0;
-  double engaged_ = 0;  ///< greatest radius that can be in material
-  double reach_ = 0;    ///< .. and that is, of what is not flat
+  double engaged_ = 0;   ///< greatest radius that can be in material
+  double reach_ = 0;     ///< .. and that is, of what is not flat
+  double fresh_mm_ = 0;  ///< from where the tool stood before; 0: no concern
   double z_ = 0, rise_ = 0, low_z_ = 0;
   Vec2 start_{0}, direction_{1, 0};
   double length_ = 0;  ///< seen from above

@@ -177,6 +177,10 @@ FrontContact SolidFront::contact_at(double angle) const {
     }
   }
   if (found.radius_mm <= 0) return found;
+  // Of a thin slice, which ends low nearer to the middle: there is material as far out as that.
+  found.deep_mm =
+      std::max(found.deep_mm, cutter_->height_mm(found.radius_mm * kInside) -
+                                  cutter_->height_mm(found.radius_mm * std::abs(std::sin(angle))));
   found.high_mm = wall + cutter_->height_mm(found.radius_mm * kInside) -
                   cutter_->height_mm(found.inner_mm * kInside);
   found.edge_mm = wall + profile_mm(found.radius_mm) - profile_mm(found.inner_mm);
