@@ -192,7 +192,7 @@ TEST_F(TorchProgram, MaterialsOfAFileByM190) {
   EXPECT_EQ(run.motions[2].feed_mm_per_min, 4000);
   EXPECT_EQ(run.material(3).number, 8);
   ASSERT_EQ(run.summary.notes.size(), 1U);
-  EXPECT_EQ(run.summary.notes[0].text, "M159 P1 Q-1");
+  EXPECT_EQ(run.summary.notes[0].text, "M159 P1");
   options_.torch.materials_path = folder_.path("none.cfg");
   EXPECT_EQ(this->run("M2\n").messages(), "kerf: error: cannot read " + folder_.path("none.cfg") +
                                               ": No such file or directory\n");
