@@ -134,21 +134,21 @@ void EngagementLog::take_back_air(const EngagedWay& way) {
 }
 
 void EngagementLog::add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds,
-                                double most_mm3) {
+                                double most_mm3, bool is_plunge) {
   if (pass == kNoPass) {
     unmeasured_mm3_ += mm3;
     return;
   }
   EngagementSums& sums = passes_[pass].sums;
   sums.removed_mm3 += mm3;
-  if (window_.pass != pass) {
+  if (window_.pass != pass || is_plunge) {
     window_ = {};
     window_.pass = pass;
   }
   window_.mm3 += mm3, window_.most_mm3 += most_mm3;
   window_.mm += way_mm, window_.seconds += seconds;
   const double least_mm = kWindowOfDiameter * tools_[tool_of_pass_[pass]].diameter_mm;
-  if (window_.mm < least_mm || window_.seconds <= 0) return;
+  if ((window_.mm < least_mm && !is_plunge) || window_.seconds <= 0) return;
   sums.rate_most_mm3_per_s =
       std::max(sums.rate_most_mm3_per_s, std::min(window_.mm3, window_.most_mm3) / window_.seconds);
   window_ = {};

@@ -71,8 +71,10 @@ class EngagementLog {
   /// (EngagementSums::in_material_mm(), cut_s). `most_mm3`: what stood before the tool there;
   /// heights count what its front takes on the way straight on with a later move, or with the last
   /// of them all that the front holds, and a rate is none of that.
+  /// `is_plunge`: straight down, where a rate is another one than along the way.
   void add_removed(std::uint32_t pass, double mm3, double way_mm, double seconds,
-                   double most_mm3 = std::numeric_limits<double>::infinity());
+                   double most_mm3 = std::numeric_limits<double>::infinity(),
+                   bool is_plunge = false);
 
   /// What a tool has left, when all is cut.
   void set_scallops(int tool, const std::string& shape, const Scallops& scallops);

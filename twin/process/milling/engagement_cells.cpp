@@ -272,7 +272,10 @@ double EngagementScan::deepest(const Station& station, const CellFront& front) c
     const Vec2 arm = front.deepest + (beside < 0 ? 1.0 : -1.0) * (std::abs(beside) - at) * left;
     const double r = glm::length(arm), over = over_surface(station, station.center + arm);
     if (at < 0 || r >= radius_ || over <= kThinnestFilm_mm) break;
-    deep = std::max(deep, over - kThinnestFilm_mm + lift_of(r) - lift_of(at));
+    // Between two cells a surface may seem to go on higher than the blank does.
+    const double above_tip =
+        std::min(over - kThinnestFilm_mm + lift_of(r), front.most_above_tip_mm);
+    deep = std::max(deep, above_tip - lift_of(at));
   }
   return deep;
 }

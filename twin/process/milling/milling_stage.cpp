@@ -460,7 +460,7 @@ void MillingStage::collect_reports() {
       films_.take(report.film, {move.source, move.start_s, use.number});
     if (engagement_ && (report.removed_mm3 > 0 || move.engaged_mm > 0))
       site_.engagement->add_removed(move.pass, report.removed_mm3, move.engaged_mm, move.engaged_s,
-                                    move.engaged_mm3);
+                                    move.engaged_mm3, move.straight_down);
     if (report.removed_mm3 <= 0) continue;
     use.removed_mm3 += report.removed_mm3;
     if (move.reversed && move.feed && move.straight_down && !reversed_told_.contains(use.number))

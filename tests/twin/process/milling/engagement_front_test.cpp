@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "stock/cutter/shape_spec.h"
@@ -431,6 +432,31 @@ TEST_F(EngagementMeterTest, ShortMovesAreAsGoodAsALongOne) {
   EXPECT_NEAR(sums.wide_most_mm, 6, 0.1);
   EXPECT_NEAR(sums.angle_most_rad, kPi - std::acos(0.5), 2 * kDegree);
 }
+
+/// A slot 1 mm deep through 60 mm: half of the edge, but for where it comes in and goes out, half
+/// of its width there each.
+class ShortMovesOfRoundTools : public EngagementMeterTest,
+                               public testing::WithParamInterface<std::tuple<const char*, double>> {
+};
+TEST_P(ShortMovesOfRoundTools, AreInASlotAsALongOneIs) {
+  const auto [shape, step] = GetParam();
+  const double half = shape[1] == 'a' ? std::sqrt(9.0 - 4.0) : 3.0;
+  std::vector<CutMove> moves;
+  for (int n = 0; n * step < 70; ++n)
+    moves.push_back(way({-5 + step * n, 20, -1}, {-5 + step * (n + 1), 20, -1}));
+  run(shape, moves);
+  const Engagement found = log_.result();
+  ASSERT_EQ(found.passes.size(), 1u);
+  const EngagementSums& sums = found.passes[0].sums;
+  const double mean = sums.mean(sums.angle_sum) / kDegree;
+  EXPECT_NEAR(mean, 180 * (60 - half) / 60, step < 0.1 ? 18 : 9);
+  EXPECT_GT(sums.angle_most_rad, (step < 0.1 ? 162 : 174) * kDegree);
+  EXPECT_NEAR(sums.deep_most_mm, 1, 0.01);
+  EXPECT_NEAR(sums.wide_most_mm, 2 * half, 0.1 * half);
+}
+INSTANTIATE_TEST_SUITE_P(Steps, ShortMovesOfRoundTools,
+                         testing::Combine(testing::Values("ball:6", "bull:6:1"),
+                                          testing::Values(2.0, 1.0, 0.25, 0.05)));
 
 TEST_F(EngagementMeterTest, AirLongerThanTheToolEndsAPass) {
   // Two islands 5 and 20 mm apart from each other.
