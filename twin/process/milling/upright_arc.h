@@ -47,7 +47,8 @@ class UprightArc {
   double angle_at(double part) const { return start_ + part * sweep_; }
   double part_of(double angle) const { return (angle - start_) / sweep_; }
 
-  static constexpr int kPlaces = 8, kNarrowings = 14;
+  static constexpr int kPlaces = 8, kNarrowings = 14, kHalvings = 16;
+  static constexpr double kPlane_mm = 1e-6;  ///< a way that climbs no more lies in a plane
   CutMove move_;
   Vec3 across_{1, 0, 0}, axis_{0, 1, 0};
   double center_along_ = 0;  ///< of the first point, from the centre, along the axis
@@ -69,7 +70,13 @@ double UprightArc::lowest_over(const Vec2& point, double from, double to, double
   const double r = std::max(0.5 * (r0_ + r1_), 1e-9), slack = std::abs(r1_ - r0_);
   const Vec2 arm = point - Vec2(move_.arc->center_mm);
   const double across = arm.x * across_.x + arm.y * across_.y;
-  const double left = (across - radius_mm - slack) / r, right = (across + radius_mm + slack) / r;
+  const double aside = arm.x * axis_.x + arm.y * axis_.y - center_along_;
+  const bool is_plane = std::abs(climb_mm_) < kPlane_mm;
+  if (is_plane && std::abs(aside) > radius_mm + kPlane_mm) return lowest;
+  const double half =
+      is_plane ? std::sqrt(std::max(0.0, radius_mm * radius_mm - aside * aside)) + kPlane_mm
+               : radius_mm;
+  const double left = (across - half - slack) / r, right = (across + half + slack) / r;
   if (left > 1 || right < -1) return lowest;
   const double near = std::acos(std::clamp(right, -1.0, 1.0));
   const double far = std::acos(std::clamp(left, -1.0, 1.0));
@@ -80,11 +87,23 @@ double UprightArc::lowest_over(const Vec2& point, double from, double to, double
     if (low >= high) return;
     double best = low, least = std::numeric_limits<double>::infinity();
     const double step = (high - low) / kPlaces;
-    for (int k = 0; k <= kPlaces; ++k) {
-      const double angle = low + k * step, found = over(part_of(angle));
-      if (found < least) least = found, best = angle;
-    }
     const auto at_angle = [&](double angle) { return over(part_of(angle)); };
+    bool was_over = false;
+    for (int k = 0; k <= kPlaces; ++k) {
+      const double angle = low + k * step, found = at_angle(angle);
+      if (found < least) least = found, best = angle;
+      const bool is_over = found < std::numeric_limits<double>::infinity();
+      // With its rim a flat tool is there first, and last.
+      if (k > 0 && is_over != was_over) {
+        double in = is_over ? angle : angle - step, out = is_over ? angle - step : angle;
+        for (int n = 0; n < kHalvings; ++n) {
+          const double middle = 0.5 * (in + out);
+          (at_angle(middle) < std::numeric_limits<double>::infinity() ? in : out) = middle;
+        }
+        lowest = std::min(lowest, at_angle(in));
+      }
+      was_over = is_over;
+    }
     const double narrow_low = std::max(low, best - step), narrow_high = std::min(high, best + step);
     least = std::min(least, golden_section(at_angle, narrow_low, narrow_high, kNarrowings).least);
     lowest = std::min(lowest, least);

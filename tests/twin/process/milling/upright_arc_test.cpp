@@ -97,18 +97,21 @@ TEST(UprightArcTest, ComesAsLowAsAllOfItsPlaces) {
   };
   const std::vector<std::string> shapes = {"flat:6", "ball:6", "bull:8:1", "vee:10:90"};
   int met = 0;
-  for (int n = 0; n < 60; ++n) {
+  for (int n = 0; n < 120; ++n) {
     const Cutter cutter = parse_shape(shapes[static_cast<std::size_t>(n) % shapes.size()]).value();
+    // One after the other: compilers differ in which argument they take first.
     const double radius = between(1, 30), from = between(-180, 180);
-    const CutMove arc =
-        upright({between(-5, 5), between(-5, 5), between(-9, 9)}, radius, between(0, 360), from,
-                from + between(-360, 360), n % 3 == 0 ? between(-10, 10) : 0);
+    const double x = between(-5, 5), y = between(-5, 5), z = between(-9, 9);
+    const double toward = between(0, 360), sweep = between(-360, 360);
+    const double climb = n % 3 == 0 ? between(-10, 10) : 0;
+    const CutMove arc = upright({x, y, z}, radius, toward, from, from + sweep, climb);
     const double until = n % 2 == 0 ? 1 : between(0.1, 1);
     const UprightArc upright_arc = *UprightArc::of(arc);
     const auto lift = [&](double mm) { return cutter.height_mm(mm); };
     for (int k = 0; k < 8; ++k) {
       const Vec3 on = upright_arc.point_at(between(0, 1));
-      const Vec2 point = Vec2(on) + Vec2(between(-3.5, 3.5), between(-3.5, 3.5));
+      const double right = between(-3.5, 3.5), up = between(-3.5, 3.5);
+      const Vec2 point = Vec2(on) + Vec2(right, up);
       const double expected = by_brute_force(arc, cutter, point, 0, until);
       const double found = upright_arc.lowest_over(point, 0, until, cutter.radius_mm(), lift);
       if (expected == std::numeric_limits<double>::infinity()) continue;
