@@ -38,7 +38,8 @@ class UprightArc {
 
   /// How low a tool comes over the point on a part of the way; infinite: it does not.
   /// `lift(mm)`: of its surface over its tip, so far from its middle, up to `radius_mm`. To
-  /// 0.0001 mm of tools with no edge but their rim.
+  /// 0.0001 mm of tools with no edge but their rim. A way that also climbs along the axis may be
+  /// missed where it is over the point for less than an eighth of how long one in a plane would be.
   template <class Lift>
   double lowest_over(const Vec2& point, double from, double to, double radius_mm,
                      const Lift& lift) const;
