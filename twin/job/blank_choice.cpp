@@ -264,6 +264,7 @@ void BlankGuess::add(const Motion& m, std::span<const CutMove> moves, double too
   }
   if (way.empty()) return;
   all_mm_.extend(way);
+  if (const std::optional<FeedLinks::Ended> ended = watch_.end_before(m)) take(*ended);
   if (!is_feed(m)) return;
   lowest_feed_mm_ = has_feed_ ? std::min(lowest_feed_mm_, way.min.z) : way.min.z;
   has_feed_ = true;
