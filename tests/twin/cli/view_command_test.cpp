@@ -721,13 +721,9 @@ TEST_F(ViewWindow, AMachineIsFollowed) {
   ASSERT_NE(machine.wait_line("finished"), "");
   kerf_->settled();
   // A start at line 7 from where it stands now: the answer lies over the part.
-  kerf_->click(100, 143, 3);
-  kerf_->click(140, 177);
-  EXPECT_TRUE(kerf_->shows(
-      [](const Picture& p) {
-        return is_dark(p, {320, 150}, {500, 200});
-      },
-      "S"));
+  EXPECT_TRUE(kerf_->choose(100, 143, 140, 177, [](const Picture& p) {
+    return is_dark(p, {320, 150}, {500, 200});
+  }));
   kerf_->key("Q");
   expect_end(0);
   EXPECT_GT(Json::parse(read_file(folder_.file("live.json")))["stock"]["removed_mm3"], 100);

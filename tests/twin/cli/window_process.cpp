@@ -127,6 +127,23 @@ void WindowedKerf::click(int x_px, int y_px, int button) const {
   EXPECT_TRUE(xdotool(fmt::format("mousemove {} {} sleep 0.3 click {}", x_px, y_px, button)));
 }
 
+bool WindowedKerf::choose(int x_px, int y_px, int row_x_px, int row_y_px,
+                          const std::function<bool(const Picture&)>& wanted) {
+  constexpr std::chrono::seconds kAnswer{4}, kTriesPatience{100};
+  std::chrono::milliseconds pause{300};
+  bool seen = false;
+  const auto is_chosen = [&] {
+    click(x_px, y_px, 3);
+    std::this_thread::sleep_for(pause);
+    pause *= 2;
+    click(row_x_px, row_y_px);
+    wait_for([&] { return (seen = wanted(screenshot("S"))) || has_ended(); }, kAnswer);
+    return seen || has_ended();
+  };
+  wait_for(is_chosen, kTriesPatience);
+  return seen;
+}
+
 void WindowedKerf::key(const std::string& name) const {
   EXPECT_TRUE(xdotool(fmt::format("key {}", name)));
 }

@@ -32,6 +32,10 @@ class WindowedKerf {
   void key(const std::string& name) const;
   /// The mouse there, from the window's upper left corner: 1 is its left button, 3 the right one.
   void click(int x_px, int y_px, int button = 1) const;
+  /// A row of the menu that the right button opens there, until a picture (by "S") satisfies: a
+  /// menu that is not drawn yet takes no click. False after two minutes.
+  bool choose(int x_px, int y_px, int row_x_px, int row_y_px,
+              const std::function<bool(const Picture&)>& wanted);
   /// One character after the other.
   void type(const std::string& text) const;
   /// By the dialog that asks for a name: typed when it is there, else its letters would be keys of
