@@ -8,7 +8,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -44,7 +43,9 @@ constexpr std::uint64_t kLargestShare = 4;
 /// Clocks of file systems are this coarse: what changed so shortly before a run may change again
 /// without a sign.
 constexpr std::int64_t kClockTick_ns = 20'000'000;
-constexpr std::chrono::hours kLeftBehind{1};
+constexpr std::int64_t kLeftBehind_ns = 3'600'000'000'000;
+/// Each is looked at when another comes, which takes a microsecond or two.
+constexpr std::size_t kMostEntries = 1000;
 
 class Descriptor {
  public:
@@ -159,37 +160,40 @@ std::optional<std::string> row_of(const FileRead& read, std::int64_t begun_ns) {
 /// Removes the entries that were used longest ago, and what writers that were killed have left.
 void tidy(const std::string& folder, std::uint64_t most_bytes) {
   struct Entry {
-    fs::file_time_type used;
+    std::int64_t used_ns;
     std::uint64_t bytes;
     fs::path path;
   };
   std::vector<Entry> entries;
   std::uint64_t total = 0;
   std::error_code error;
-  const auto now = fs::file_time_type::clock::now();
+  timespec clock{};
+  clock_gettime(CLOCK_REALTIME, &clock);
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    std::error_code gone;
-    const auto status = at->symlink_status(gone);
-    if (gone || !fs::is_regular_file(status)) continue;
-    const auto used = at->last_write_time(gone);
-    const std::uint64_t bytes = gone ? 0 : at->file_size(gone);
-    if (gone) continue;
     const std::string name = at->path().filename().string();
-    if (name.find(kEnding) == name.npos) continue;
-    if (name.front() == '.') {
-      if (now - used > kLeftBehind) fs::remove(at->path(), gone);
+    struct stat info {};
+    if (name.find(kEnding) == name.npos || lstat(at->path().c_str(), &info) != 0 ||
+        !S_ISREG(info.st_mode)) {
       continue;
     }
-    entries.push_back({used, bytes, at->path()});
-    total += bytes;
+    const std::int64_t used_ns = ns_of(info.st_mtim);
+    if (name.front() == '.') {
+      std::error_code gone;
+      if (ns_of(clock) - used_ns > kLeftBehind_ns) fs::remove(at->path(), gone);
+      continue;
+    }
+    entries.push_back({used_ns, static_cast<std::uint64_t>(info.st_size), at->path()});
+    total += entries.back().bytes;
   }
   std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.used < b.used; });
+            [](const Entry& a, const Entry& b) { return a.used_ns < b.used_ns; });
+  std::size_t left = entries.size();
   for (const Entry& entry : entries) {
-    if (total <= most_bytes) break;
+    if (total <= most_bytes && left <= kMostEntries) break;
     std::error_code gone;
     fs::remove(entry.path, gone);
     total -= entry.bytes;
+    --left;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "interp_bridge/record_cache.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -184,6 +185,22 @@ TEST(RecordCache, WhatWasUsedLongestAgoGoesFirst) {
   keep(cache, "large", std::string(2'501, 'r'));
   EXPECT_EQ(found(cache, "large"), "-");
   EXPECT_EQ(entries(folder.path("cache")).size(), 4U);
+}
+
+/// A folder of many small programs would make each new one wait.
+TEST(RecordCache, ThereAreAThousandAtMost) {
+  const TestFolder folder;
+  const RecordCache cache(folder.path("cache"), kRoom);
+  keep(cache, "old", "records");
+  for (int i = 0; i < 1200; ++i) folder.write(fmt::format("cache/{:04}.records", i), "x");
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(48);
+  for (const fs::path& path : entries(folder.path("cache"))) fs::last_write_time(path, long_ago);
+  EXPECT_EQ(found(cache, "old"), "records");  // used now
+  let_clock_tick();
+  keep(cache, "new", "records");
+  EXPECT_EQ(entries(folder.path("cache")).size(), 1000U);
+  EXPECT_EQ(found(cache, "old"), "records");
+  EXPECT_EQ(found(cache, "new"), "records");
 }
 
 TEST(RecordCache, WhatAKilledWriterLeftGoesWhenItIsOld) {
