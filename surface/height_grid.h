@@ -64,8 +64,8 @@ class HeightGrid {
   static constexpr int kBlockY = 4;
 
   /// `bounds_mm`: from the floor to the top of the blank. `tiles`: row by row from low x, y, as
-  /// many as cover the cells; good as long as `keeper` lives.
-  HeightGrid(const Box& bounds_mm, int nx, int ny, std::vector<const float*> tiles,
+  /// many as cover the cells; they and what they point to are good as long as `keeper` lives.
+  HeightGrid(const Box& bounds_mm, int nx, int ny, const float* const* tiles,
              std::shared_ptr<const void> keeper)
       : bounds_mm_(bounds_mm),
         nx_(nx),
@@ -73,7 +73,7 @@ class HeightGrid {
         tiles_x_((nx + kTileCells - 1) / kTileCells),
         cell_x_mm_(bounds_mm.size().x / nx),
         cell_y_mm_(bounds_mm.size().y / ny),
-        tiles_(std::move(tiles)),
+        tiles_(tiles),
         keeper_(std::move(keeper)) {}
 
   const Box& bounds_mm() const { return bounds_mm_; }
@@ -84,7 +84,7 @@ class HeightGrid {
   float floor_mm() const { return static_cast<float>(bounds_mm_.min.z); }
 
   int tiles_x() const { return tiles_x_; }
-  int tiles_y() const { return static_cast<int>(tiles_.size()) / std::max(1, tiles_x_); }
+  int tiles_y() const { return (ny_ + kTileCells - 1) / kTileCells; }
   const float* tile(int tx, int ty) const {
     return tiles_[static_cast<std::size_t>(ty) * static_cast<std::size_t>(tiles_x_) +
                   static_cast<std::size_t>(tx)];
@@ -109,19 +109,6 @@ class HeightGrid {
       return tiles_[x / kTileCells]
                    [first_ + x % kTileCells / kBlockX * (kBlockX * kBlockY) + x % kBlockX];
     }
-    /// The highest of so many cells from there on, all of which the grid contains; `i`: a multiple
-    /// of that.
-    static constexpr int kOfHighest = 8;
-    float highest_from(int i) const {
-      const auto x = static_cast<unsigned>(i);
-      const float* at = tiles_[x / kTileCells] + first_ + x % kTileCells * kBlockY;
-      float highest = std::max(at[0], at[1]);
-      for (int block = 1; block < kOfHighest / kBlockX; ++block) {
-        at += kBlockX * kBlockY;
-        highest = std::max(highest, std::max(at[0], at[1]));
-      }
-      return highest;
-    }
 
    private:
     const float* const* tiles_;
@@ -132,8 +119,8 @@ class HeightGrid {
   std::array<float, 4> heights_of_four(int i, int j) const {
     const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
     const auto row = static_cast<std::size_t>(tiles_x_);
-    const float* const* const lower = tiles_.data() + y / kTileCells * row;
-    const float* const* const upper = tiles_.data() + (y + 1) / kTileCells * row;
+    const float* const* const lower = tiles_ + y / kTileCells * row;
+    const float* const* const upper = tiles_ + (y + 1) / kTileCells * row;
     const std::size_t left = x / kTileCells, right = (x + 1) / kTileCells;
     const float floor = floor_mm();
     return {std::max(floor, lower[left][offset_of_row(y) + offset_in_row(x)]),
@@ -160,7 +147,7 @@ class HeightGrid {
   Box bounds_mm_;
   int nx_, ny_, tiles_x_;
   double cell_x_mm_, cell_y_mm_;
-  std::vector<const float*> tiles_;
+  const float* const* tiles_;
   std::shared_ptr<const void> keeper_;
 };
 

@@ -123,11 +123,13 @@ TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny, bool keeps_cut_ids)
   const std::size_t count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
   arena_ = std::make_shared<TileArena>(count, tile_bytes());
   tiles_.reserve(count);
+  cells_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     float* const cells = arena_->first(i);
     std::fill_n(cells, kTileFloats, std::numeric_limits<float>::lowest());
     if (keeps_cut_ids) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
     tiles_.push_back(TileArena::share(arena_, cells));
+    cells_.push_back(cells);
   }
   versions_.resize(count);
   const std::vector<float> row(static_cast<std::size_t>(nx), floor_mm());
@@ -185,9 +187,13 @@ std::array<std::uint32_t, 4> TileGrid::cut_ids_of_four(int i, int j) const {
 
 void TileGrid::read_cut_ids(int i, int j, bool along_x, std::span<std::uint32_t> out) const {
   if (!keeps_cut_ids_) return std::fill(out.begin(), out.end(), MeshPatch::kNotCut);
-  for (std::uint32_t& id : out) {
-    id = cut_id(i, j);
-    (along_x ? i : j) += 1;
+  // Tile by tile.
+  int& along = along_x ? i : j;
+  for (std::size_t n = 0; n < out.size();) {
+    const std::uint32_t* const ids = cut_ids(index(i / kTileCells, j / kTileCells));
+    const auto rest = static_cast<std::size_t>(kTileCells - along % kTileCells);
+    for (const std::size_t end = std::min(out.size(), n + rest); n < end; ++n, ++along)
+      out[n] = ids[offset(i, j)];
   }
 }
 
@@ -202,6 +208,7 @@ void TileGrid::keep_cut_ids(bool keep) {
     if (keep) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
     meet_other_grids();
     tiles_[i] = TileArena::share(arena, cells);
+    cells_[i] = cells;
     versions_[i] = change_;
   }
   arena_ = arena;
@@ -238,6 +245,7 @@ float* TileGrid::make_writable(std::size_t tile_index) {
   std::memcpy(own.get(), tile.get(), tile_bytes());
   meet_other_grids();
   tile = std::move(own);
+  cells_[tile_index] = tile.get();
   return tile.get();
 }
 

@@ -37,7 +37,9 @@ class TileGrid {
   float floor_mm() const { return static_cast<float>(bounds_.min.z); }
 
   float height(int i, int j) const { return tile(i / kTileCells, j / kTileCells)[offset(i, j)]; }
-  const float* tile(int tx, int ty) const { return tiles_[index(tx, ty)].get(); }
+  const float* tile(int tx, int ty) const { return cells_[index(tx, ty)]; }
+  /// All tiles, row by row; good until the grid is changed or gone.
+  const float* const* tiles() const { return cells_.data(); }
   /// From the floor to the top of the grid's bounds.
   Box tile_box(std::size_t tile_index) const;
   /// Whether there is a number for each cell. On: MeshPatch::kNotCut in all of them, in tiles twice
@@ -46,7 +48,7 @@ class TileGrid {
   bool keeps_cut_ids() const { return keeps_cut_ids_; }
   /// Numbers of a tile's cells, in the order of its heights. Only where they are kept.
   const std::uint32_t* cut_ids(std::size_t tile_index) const {
-    return cut_ids_of(tiles_[tile_index].get());
+    return cut_ids_of(cells_[tile_index]);
   }
   std::uint32_t cut_id(int i, int j) const {
     constexpr unsigned kSide = kTileCells;
@@ -66,7 +68,7 @@ class TileGrid {
   float lowest_mm(int x0, int y0, int x1, int y1) const;
 
   std::size_t tile_count() const { return tiles_.size(); }
-  const float* tile(std::size_t tile_index) const { return tiles_[tile_index].get(); }
+  const float* tile(std::size_t tile_index) const { return cells_[tile_index]; }
   std::uint64_t version(std::size_t tile_index) const { return versions_[tile_index]; }
   /// Takes a change of version back where the heights have turned out to be the same.
   void restore_version(std::size_t tile_index, std::uint64_t version) {
@@ -102,6 +104,7 @@ class TileGrid {
   bool keeps_cut_ids_ = false;
   std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid that keep the same
   std::vector<std::shared_ptr<float>> tiles_;
+  std::vector<const float*> cells_;  ///< where they are
   std::vector<std::uint64_t> versions_;
   std::uint64_t change_ = 0;
   std::shared_ptr<std::atomic<unsigned>> meetings_;  ///< one for all copies of a grid

@@ -16,20 +16,23 @@ std::shared_ptr<const HeightGrid> make_grid(const Box& bounds, int nx, int ny,
   constexpr int kCells = HeightGrid::kTileCells;
   const int tiles_x = (nx + kCells - 1) / kCells, tiles_y = (ny + kCells - 1) / kCells;
   constexpr std::size_t kFloats = kCells * kCells;
-  const auto heights = std::make_shared<std::vector<float>>(
-      static_cast<std::size_t>(tiles_x * tiles_y) * kFloats, -1e30f);
-  std::vector<const float*> tiles;
+  struct Kept {
+    std::vector<float> heights;
+    std::vector<const float*> tiles;
+  };
+  const auto kept = std::make_shared<Kept>();
+  kept->heights.resize(static_cast<std::size_t>(tiles_x * tiles_y) * kFloats, -1e30f);
   for (int n = 0; n < tiles_x * tiles_y; ++n)
-    tiles.push_back(heights->data() + static_cast<std::size_t>(n) * kFloats);
+    kept->tiles.push_back(kept->heights.data() + static_cast<std::size_t>(n) * kFloats);
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
       const double x = bounds.min.x + (i + 0.5) * bounds.size().x / nx;
       const double y = bounds.min.y + (j + 0.5) * bounds.size().y / ny;
       const auto tile = static_cast<std::size_t>(j / kCells * tiles_x + i / kCells);
-      (*heights)[tile * kFloats + HeightGrid::offset(i, j)] = static_cast<float>(height(x, y));
+      kept->heights[tile * kFloats + HeightGrid::offset(i, j)] = static_cast<float>(height(x, y));
     }
   }
-  return std::make_shared<const HeightGrid>(bounds, nx, ny, std::move(tiles), heights);
+  return std::make_shared<const HeightGrid>(bounds, nx, ny, kept->tiles.data(), kept);
 }
 
 /// Views from all around, above and below, near and far, in turns perspective and orthographic.

@@ -39,7 +39,8 @@ bool EngagementScan::is_fine() const { return !is_flat() && radius_ >= kFineCell
 void EngagementScan::weigh_cells(double cell_mm) {
   if (cell_mm == weighed_mm_) return;
   weighed_mm_ = cell_mm;
-  for (std::vector<double>* each : {&weights_.height_rad, &weights_.thick_per_mm, &weights_.steps})
+  for (std::vector<double>* each :
+       {&weights_.height_rad, &weights_.thick_per_mm, &weights_.upright, &weights_.steps})
     each->resize(kLifts + 1);
   for (std::size_t k = 0; k <= kLifts; ++k) {
     const double r = std::max(static_cast<double>(k) / lift_scale_, 0.25 * cell_mm);
@@ -49,6 +50,7 @@ void EngagementScan::weigh_cells(double cell_mm) {
     const double normal = width / std::hypot(width, rise);
     weights_.height_rad[k] = rise * cell_mm / r;
     weights_.thick_per_mm[k] = normal / kThinChip_mm;
+    weights_.upright[k] = std::sqrt(std::max(0.0, 1 - normal * normal));
     weights_.steps[k] = std::min(cell_mm / r, kPi) / CellFront::kStep;
   }
 }
@@ -141,107 +143,119 @@ void EngagementScan::take_batch(const Station& station, const CellRow& row, Cell
                                 CellFront& front) const {
   keep_over(station, row, cells);
   const CellWeights weights{weights_.height_rad.data(), weights_.thick_per_mm.data(),
-                            weights_.steps.data()};
+                            weights_.upright.data(), weights_.steps.data()};
   // At the blank's edge heights are taken no further than they go.
   CellGround ground = ground_of(station, row);
   ground.most_above_tip = front.most_above_tip_mm;
+  ground.fresh = fresh_mm_, ground.thin = kThinChip_mm, ground.thinnest = kThinnestChip_mm;
   kernel_->place_cells(ground, lift_table(), weights, 0.25 * front.across * cell_,
                        1 / CellFront::kStep, cells);
-  for (int n = 0; fresh_mm_ > 0 && n < cells.count; ++n) {
-    const auto k = static_cast<std::size_t>(cells.radius[n] * lift_scale_);
-    const double thick = weights_.thick_per_mm[k], ahead = cells.ahead[n] / cells.radius[n];
-    const double counts = thick * of_thin_chips(thick * kThinChip_mm, ahead);
-    cells.share[n] = std::min(1.0, counts * cells.depth[n]) * weights_.height_rad[k];
-  }
   for (int n = 0; n < cells.count; ++n) take_cell(cells, n, front);
   take_outermost(cells, front);
   cells.count = 0;
 }
 
-/// Where the heights of eight cells side by side begin, in blocks of kBlockX.
-static const float* of_eight(const HeightGrid& heights, int i, int j) {
-  static_assert(HeightGrid::kTileCells % HeightGrid::Row::kOfHighest == 0);
-  constexpr unsigned kSide = HeightGrid::kTileCells;
-  const auto x = static_cast<unsigned>(i), y = static_cast<unsigned>(j);
-  return heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
-         HeightGrid::offset(i, j);
+/// The cells of a row that are before the cutter; first > last: none.
+EngagementScan::CellRow EngagementScan::row_at(const Station& station, const CellFront& front,
+                                               int j) const {
+  const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
+  const double reach = engaged_ < radius_ ? engaged_ : radius_;
+  const Box& box = heights_->bounds_mm();
+  const Vec2 center = station.center - Vec2(box.min), ahead = station.ahead;
+  CellRow row;
+  row.tip = std::max(station.tip_z, box.min.z);
+  row.slope = rise_ > 0 ? rise_ / length_ : 0;
+  row.center_x = center.x;
+  row.j = j, row.y = (j + 0.5) * cell_y - center.y;
+  row.first = 1, row.last = 0;
+  const double half2 = reach * reach - row.y * row.y;
+  if (half2 <= 0 || j >= heights_->ny()) return row;
+  double from = -std::sqrt(half2), to = -from;
+  // Ahead of its middle, or so near to its sides that a part of the cell is.
+  const double behind = -0.5 * front.across * cell_, limit = behind - ahead.y * row.y;
+  if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
+  if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
+  if (std::abs(ahead.x) <= 1e-9 && limit > 0) return row;
+  row.first = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
+  row.last =
+      std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
+  return row;
 }
 
-/// Cells of a row that are higher than what the cutter leaves anywhere near them. Of eight side by
-/// side not one is looked at where the highest of them is below the profile at the nearest.
+/// Some cells of a row that are higher than what the cutter leaves anywhere near them.
 void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells) const {
   const HeightGrid::Row heights(*heights_, row.j);
-  constexpr int kOnce = HeightGrid::Row::kOfHighest;
-  const double y2 = row.y * row.y;
-  const double *const low_lift = low_lift_.data(), *const least_lift = least_lift_.data();
-  const auto collect = [&](int i, float kept) {
-    const double x = row.x_of(i), height = static_cast<double>(kept);
-    const int k = static_cast<int>((x * x + y2) * row.to_part);
+  const double y2 = row.y * row.y, to_part = kLifts / (radius_ * radius_);
+  const double cell_x = heights_->cell_x_mm();
+  for (int i = row.first; i <= row.last; i += each) {
+    const double x = (i + 0.5) * cell_x - row.center_x;
+    const auto height = static_cast<double>(heights.kept(i));
+    const auto k = static_cast<std::size_t>((x * x + y2) * to_part);
     // No higher than the profile somewhat farther in.
     cells.x[cells.count] = x, cells.y[cells.count] = row.y, cells.height[cells.count] = height;
-    cells.count += height > row.tip + low_lift[k] ? 1 : 0;
-  };
-  const bool is_plain = each == 1 && row.last + kOnce < heights_->nx();
-  for (int i = row.first; i <= row.last;) {
-    const int end = std::min(is_plain ? i - i % kOnce + kOnce - 1 : row.last, row.last);
-    if (is_plain) {
-      const double nearest = std::max({row.x_of(i), -row.x_of(end), 0.0});
-      const double least =
-          row.tip + least_lift[static_cast<int>((nearest * nearest + y2) * row.to_part)];
-      if (static_cast<double>(heights.highest_from(i - i % kOnce)) <= least) {
-        i = end + 1;
-        continue;
-      }
-    }
-    if (!is_plain) {
-      for (; i <= end; i += each) collect(i, heights.kept(i));
-      continue;
-    }
-    const float* const kept = of_eight(*heights_, i - i % kOnce, row.j);
-    for (; i <= end; ++i) {
-      const int k = i % kOnce;
-      collect(i, kept[k / HeightGrid::kBlockX * (HeightGrid::kBlockX * HeightGrid::kBlockY) +
-                      k % HeightGrid::kBlockX]);
-    }
+    cells.count += height > row.tip + low_lift_[k] ? 1 : 0;
+  }
+}
+
+/// All cells of as many rows as blocks are high that are higher than that, block by block: of those
+/// not one is looked at where the highest of them is below the profile at the nearest.
+void EngagementScan::collect_blocks(const Station& station, std::span<const CellRow> rows,
+                                    CellFront& front) const {
+  constexpr int kSide = HeightGrid::kTileCells, kX = CellBlocks::kX;
+  CellBlocks blocks;
+  blocks.cell_x = heights_->cell_x_mm(), blocks.cell_y = heights_->cell_y_mm();
+  blocks.y = rows[0].y, blocks.tip = rows[0].tip;
+  blocks.low_lift = low_lift_.data(), blocks.least_lift = least_lift_.data();
+  blocks.to_part = kLifts / (radius_ * radius_), blocks.last_part = kLifts + 1;
+  int first = std::numeric_limits<int>::max(), last = -1;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    blocks.first[n] = rows[n].first, blocks.last[n] = rows[n].last;
+    if (rows[n].first > rows[n].last) continue;
+    first = std::min(first, rows[n].first), last = std::max(last, rows[n].last);
+  }
+  CellBatch& cells = cells_;
+  for (int i = first - first % kX; i <= last;) {
+    const int end = std::min((i / kSide + 1) * kSide, last + 1);
+    blocks.i = i, blocks.count = (end - i + kX - 1) / kX;
+    blocks.x = (i + 0.5) * blocks.cell_x - rows[0].center_x;
+    blocks.heights =
+        heights_->tile(i / kSide, rows[0].j / kSide) + HeightGrid::offset(i, rows[0].j);
+    const int taken = kernel_->collect(blocks, cells);
+    if (taken < blocks.count) take_batch(station, rows[0], cells, front);
+    i += taken * kX;
   }
 }
 
 /// All cells before it, row by row.
 void EngagementScan::take_cells(const Station& station, CellFront& front) const {
-  const Box& box = heights_->bounds_mm();
-  const double cell_x = heights_->cell_x_mm(), cell_y = heights_->cell_y_mm();
+  constexpr int kY = CellBlocks::kY;
+  const double cell_y = heights_->cell_y_mm();
   const double reach = engaged_ < radius_ ? engaged_ : radius_;
-  const Vec2 center = station.center - Vec2(box.min), ahead = station.ahead;
-  CellRow row;
-  row.tip = std::max(station.tip_z, box.min.z);
-  row.slope = rise_ > 0 ? rise_ / length_ : 0;
-  row.to_part = kLifts / (radius_ * radius_);
-  row.cell_x = cell_x, row.center_x = center.x;
+  const double center_y = station.center.y - heights_->bounds_mm().min.y;
+  const auto row_of = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
+  const int first_j = std::max(0, row_of(center_y - reach));
+  const int last_j = std::min(row_of(center_y + reach), heights_->ny() - 1);
+  const int each = front.each, step = front.rows;
   CellBatch& cells = cells_;
   cells.count = 0;
-  const auto row_at = [&](double y) { return static_cast<int>(std::floor(y / cell_y)); };
-  const int last_j = std::min(row_at(center.y + reach), heights_->ny() - 1);
-  const int each = front.each, rows = front.rows;
-  for (int j = std::max(0, row_at(center.y - reach)); j <= last_j; j += rows) {
-    const double y = (j + 0.5) * cell_y - center.y;
-    const double half2 = reach * reach - y * y;
-    if (half2 <= 0) continue;
-    double from = -std::sqrt(half2), to = -from;
-    // Ahead of its middle, or so near to its sides that a part of the cell is.
-    const double behind = -0.5 * front.across * cell_, limit = behind - ahead.y * y;
-    if (ahead.x > 1e-9) from = std::max(from, limit / ahead.x);
-    if (ahead.x < -1e-9) to = std::min(to, limit / ahead.x);
-    if (std::abs(ahead.x) <= 1e-9 && limit > 0) continue;
-    row.first = std::max(0, static_cast<int>(std::ceil((center.x + from) / cell_x - 0.5)));
-    if (each > 1) row.first += (each - row.first % each + j / rows % each) % each;
-    row.last =
-        std::min(static_cast<int>(std::floor((center.x + to) / cell_x - 0.5)), heights_->nx() - 1);
-    row.j = j, row.y = y;
-    const int most = std::max(0, row.last - row.first) / each + 2;
-    if (cells.count + most > CellBatch::kMost) take_batch(station, row, cells, front);
-    collect_row(row, each, cells);
+  if (each == 1 && step == 1) {
+    for (int j = first_j - first_j % kY; j <= last_j; j += kY) {
+      std::array<CellRow, kY> rows;
+      for (int n = 0; n < kY; ++n)
+        rows[static_cast<std::size_t>(n)] = row_at(station, front, j + n);
+      collect_blocks(station, rows, front);
+    }
+  } else {
+    for (int j = first_j; j <= last_j; j += step) {
+      CellRow row = row_at(station, front, j);
+      if (row.first > row.last) continue;
+      if (each > 1) row.first += (each - row.first % each + j / step % each) % each;
+      const int most = std::max(0, row.last - row.first) / each + 2;
+      if (cells.count + most > CellBatch::kMost) take_batch(station, row, cells, front);
+      collect_row(row, each, cells);
+    }
   }
-  take_batch(station, row, cells, front);
+  take_batch(station, row_at(station, front, first_j), cells, front);
 }
 
 /// How far beyond a place in material it ends, in that direction.

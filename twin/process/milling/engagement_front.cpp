@@ -252,14 +252,15 @@ double EngagementScan::left_at_wall(const Vec2& point, int i, int j, double heig
 }
 
 /// How high the moves that made the four cells about a place have left it; where one of them is of
-/// no move, as high as that at most.
-double EngagementScan::left_by_owners(const Vec2& point, int i, int j) const {
+/// no move, as high as that at most. `kept`: the heights of the four.
+double EngagementScan::left_by_owners(const Vec2& point, int i, int j,
+                                      const std::array<float, 4>& kept) const {
   double height = kNeverEnds, highest = -kNeverEnds;
   std::uint32_t asked = MeshPatch::kNotCut;
-  const std::array<float, 4> heights = heights_->heights_of_four(i, j);
+  const float floor = heights_->floor_mm();
   const std::array<std::uint32_t, 4> numbers = owners_->present_cut_ids_of_four(i, j);
   for (std::size_t n = 0; n < numbers.size(); ++n) {
-    const auto own = static_cast<double>(heights[n]);
+    const auto own = static_cast<double>(std::max(floor, kept[n]));
     highest = std::max(highest, own);
     const std::uint32_t number = numbers[n];
     if (!ways_->knows(number)) {
@@ -322,12 +323,12 @@ double EngagementScan::over_surface(const Station& station, const Vec2& point) c
   };
   if (is_wall) {
     if (owners_ == nullptr) return depth_of((right < 0.5 ? 0 : 1) + (up < 0.5 ? 0 : 2));
-    return left_by_owners(point, i, j) - tip - lift_at(point, station);
+    return left_by_owners(point, i, j, kept) - tip - lift_at(point, station);
   }
   const double depth[] = {depth_of(0), depth_of(1), depth_of(2), depth_of(3)};
   const double twist = std::abs(depth[0] + depth[3] - depth[1] - depth[2]);
   if (owners_ != nullptr && twist > kTwistCells * cell_)
-    return left_by_owners(point, i, j) - tip - lift_at(point, station);
+    return left_by_owners(point, i, j, kept) - tip - lift_at(point, station);
   return (1 - up) * ((1 - right) * depth[0] + right * depth[1]) +
          up * ((1 - right) * depth[2] + right * depth[3]);
 }
@@ -361,22 +362,22 @@ double EngagementScan::over_ray(const Ray& ray, double radius) const {
 }
 
 /// As they are kept. Where all four are in one tile only the first is looked for.
-static void read_four(const HeightGrid& heights, RayPlaces& at, int k) {
-  constexpr unsigned kSide = HeightGrid::kTileCells, kX = HeightGrid::kBlockX,
-                     kY = HeightGrid::kBlockY, kBlock = kX * kY;
-  const auto x = static_cast<unsigned>(at.i[k]), y = static_cast<unsigned>(at.j[k]);
-  if (x % kSide == kSide - 1 || y % kSide == kSide - 1) {
-    const std::array<float, 4> four = heights.heights_of_four(at.i[k], at.j[k]);
-    for (std::size_t n = 0; n < four.size(); ++n) at.height[n][k] = four[n];
-    return;
+static void read_fours(const HeightGrid& heights, int count, RayPlaces& at) {
+  static_assert(RayPlaces::kTileCells == HeightGrid::kTileCells);
+  static_assert(RayPlaces::kBlockX == HeightGrid::kBlockX);
+  static_assert(RayPlaces::kBlockY == HeightGrid::kBlockY);
+  constexpr int kSide = HeightGrid::kTileCells;
+  for (int k = 0; k < count; ++k) {
+    if (at.offset[k] < 0) {
+      const std::array<float, 4> four = heights.heights_of_four(at.i[k], at.j[k]);
+      for (std::size_t n = 0; n < four.size(); ++n) at.height[n][k] = four[n];
+      continue;
+    }
+    const float* const first = heights.tile(at.i[k] / kSide, at.j[k] / kSide) + at.offset[k];
+    const int right = at.next_x[k], up = at.next_y[k];
+    at.height[0][k] = first[0], at.height[1][k] = first[right];
+    at.height[2][k] = first[up], at.height[3][k] = first[up + right];
   }
-  const float* const first =
-      heights.tile(static_cast<int>(x / kSide), static_cast<int>(y / kSide)) +
-      HeightGrid::offset(at.i[k], at.j[k]);
-  const unsigned right = x % kX == kX - 1 ? kBlock - (kX - 1) : 1;
-  const unsigned up = y % kY == kY - 1 ? kSide / kX * kBlock - (kY - 1) * kX : kX;
-  at.height[0][k] = first[0], at.height[1][k] = first[right];
-  at.height[2][k] = first[up], at.height[3][k] = first[up + right];
 }
 
 /// The same of many radii at once.
@@ -389,7 +390,7 @@ void EngagementScan::over_places(const Ray& ray, RayPlaces& at, int count) const
   const FrontGrid grid = front_grid();
   const RayLine line{station.center.x, station.center.y, ray.out.x, ray.out.y};
   kernel_->lay_ray(grid, line, way_end(station), count, at);
-  for (int k = 0; k < count; ++k) read_four(*heights_, at, k);
+  read_fours(*heights_, count, at);
   RayGround ground;
   ground.tip = std::max(station.tip_z, heights_->bounds_mm().min.z);
   ground.film = kThinnestFilm_mm;
@@ -398,25 +399,27 @@ void EngagementScan::over_places(const Ray& ray, RayPlaces& at, int count) const
   ground.knows_owners = owners_ != nullptr, ground.has_held = held_.length > 0;
   kernel_->look_along(grid, line, lift_table(), ground, count, at);
   for (int k = 0; k < count; ++k) {
-    if (ray.slope > 0 && slope_of(at.radius[k]) * ray.ahead <= ray.slope)
-      at.depth[k] = -kThinnestFilm_mm;
-    else
-      at.depth[k] = over_place(ray, at, k) - kThinnestFilm_mm;
+    if (at.state[k] != RayPlaces::kDone) at.depth[k] = over_place(ray, at, k);
+    at.depth[k] -= kThinnestFilm_mm;
+  }
+  for (int k = 0; k < count && ray.slope > 0; ++k) {
+    if (slope_of(at.radius[k]) * ray.ahead <= ray.slope) at.depth[k] = -kThinnestFilm_mm;
   }
 }
 
 /// What is still to be asked of one of them.
 double EngagementScan::over_place(const Ray& ray, const RayPlaces& at, int k) const {
-  const double depth = at.depth[k];
-  if (at.state[k] == RayPlaces::kDone) return depth;
   const Vec2 point(at.x[k], at.y[k]);
   const double tip = std::max(ray.station->tip_z, heights_->bounds_mm().min.z);
   if (at.state[k] == RayPlaces::kHeld) {
     const double surface = tip + at.lift[k];
-    return behind_held(point, depth + surface) - surface;
+    return behind_held(point, at.depth[k] + surface) - surface;
   }
-  if (at.state[k] == RayPlaces::kOwners)
-    return left_by_owners(point, at.i[k], at.j[k]) - tip - at.lift[k];
+  if (at.state[k] == RayPlaces::kOwners) {
+    const std::array<float, 4> kept = {at.height[0][k], at.height[1][k], at.height[2][k],
+                                       at.height[3][k]};
+    return left_by_owners(point, at.i[k], at.j[k], kept) - tip - at.lift[k];
+  }
   return over_surface(*ray.station, point);
 }
 
@@ -424,8 +427,8 @@ EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle)
   const Vec2 left(-station.ahead.y, station.ahead.x);
   Ray ray;
   ray.station = &station;
-  ray.out = std::cos(angle) * station.ahead + std::sin(angle) * left;
-  ray.ahead = std::cos(angle);
+  ray.ahead = std::cos(angle), ray.left = std::sin(angle);
+  ray.out = ray.ahead * station.ahead + ray.left * left;
   ray.slope = rise_ > 0 ? rise_ / length_ : 0;
   return ray;
 }
@@ -536,12 +539,15 @@ void EngagementScan::look_along(const Ray& ray) {
 void EngagementScan::round_contact(const Station& station, double angle, FrontContact& found) {
   const Ray ray = ray_at(station, angle);
   look_along(ray);
-  const double sine = std::abs(std::sin(angle));
+  const double sine = std::abs(ray.left);
   const double most_above_tip = heights_->bounds_mm().max.z - station.tip_z;
   const auto take = [&](const RayPlace& from, const RayPlace& to) {
     const bool is_laid = from.at != nullptr && to.at == from.at + 1;
     const RayStep step = is_laid ? to.at->step : step_between(from.radius, to.radius);
     if (step.width_mm <= 0) return;
+    // What is thick without that is thick with it: of_thin_chips() is 1 at least.
+    const bool is_thick = step.normal * std::min(from.depth, to.depth) >= kThinChip_mm;
+    if (is_thick) return void(found.high_mm += step.rise_mm);
     const double thick = step.normal * of_thin_chips(step.normal, ray.ahead);
     found.high_mm += step.rise_mm * counted(thick * from.depth, thick * to.depth);
   };

@@ -232,7 +232,7 @@ class EngagementScan {
   }
   double behind_own(const Vec2& point, double height) const;
   bool is_cut_by_own(const Vec2& point, double height) const;
-  double left_by_owners(const Vec2& point, int i, int j) const;
+  double left_by_owners(const Vec2& point, int i, int j, const std::array<float, 4>& kept) const;
   double left_at_wall(const Vec2& point, int i, int j, double height) const;
   bool is_on_way(const Station& station, const Vec2& point) const;
   Station station_at(double part) const;
@@ -242,8 +242,8 @@ class EngagementScan {
   struct Ray {
     const Station* station = nullptr;
     Vec2 out{1, 0};
-    double ahead = 1;  ///< its part along the way
-    double slope = 0;  ///< of a way up
+    double ahead = 1, left = 0;  ///< its parts along the way and across it
+    double slope = 0;            ///< of a way up
   };
   Ray ray_at(const Station& station, double angle) const;
   double over_ray(const Ray& ray, double radius) const;
@@ -310,14 +310,16 @@ class EngagementScan {
   /// Cells of a row, seen from the cutter's middle.
   struct CellRow {
     double tip = 0, slope = 0;  ///< as high as the cutter's tip is, of its way up
-    double to_part = 0;         ///< from a radius' square to its place in low_lift_
-    double cell_x = 0, center_x = 0, y = 0;
+    double center_x = 0;        ///< of the cutter, from the grid's side
+    double y = 0;
     int j = 0, first = 0, last = 0;
-    double x_of(int i) const { return (i + 0.5) * cell_x - center_x; }
   };
   bool is_fine() const;
   CellGround ground_of(const Station& station, const CellRow& row) const;
+  CellRow row_at(const Station& station, const CellFront& front, int j) const;
   void collect_row(const CellRow& row, int each, CellBatch& cells) const;
+  void collect_blocks(const Station& station, std::span<const CellRow> rows,
+                      CellFront& front) const;
   void keep_over(const Station& station, const CellRow& row, CellBatch& cells) const;
   static void take_cell(const CellBatch& cells, int n, CellFront& front);
   static void take_outermost(const CellBatch& cells, CellFront& front);
@@ -369,9 +371,10 @@ class EngagementScan {
   std::vector<double> lift_;  ///< of the cutter above its tip, over the radius
   double lift_scale_ = 0;
   /// What a cell in material adds: height times angle; for each mm of its depth, so much of that
-  /// counts as is no thin chip; and over how many steps of directions it is seen.
+  /// counts as is no thin chip, and of a level one so much is normal to the cutter; and over how
+  /// many steps of directions it is seen.
   struct Weights {
-    std::vector<double> height_rad, thick_per_mm, steps;
+    std::vector<double> height_rad, thick_per_mm, upright, steps;
   };
   Weights weights_;
   double weighed_mm_ = 0;           ///< for cells of that size

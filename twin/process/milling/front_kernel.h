@@ -33,6 +33,7 @@ struct FrontEnd {
 /// Places along one direction from the cutter's middle, at these radii.
 struct RayPlaces {
   static constexpr int kMost = 32;
+  static constexpr int kTileCells = 64, kBlockX = 2, kBlockY = 4;  ///< HeightGrid's
   using Each = double[kMost];
   alignas(32) Each radius;
   alignas(32) Each x, y;          ///< where they are
@@ -41,7 +42,10 @@ struct RayPlaces {
   alignas(32) Each lift;          ///< of the cutter there
   alignas(32) Each depth;         ///< of the material over that
   alignas(32) std::int32_t i[kMost], j[kMost];  ///< the first of the four
-  alignas(32) float height[4][kMost];           ///< of the four
+  /// Within its tile as heights are kept (HeightGrid), and from there to the next along x and y;
+  /// less than 0: the four are in several tiles.
+  alignas(32) std::int32_t offset[kMost], next_x[kMost], next_y[kMost];
+  alignas(32) float height[4][kMost];  ///< of the four
   /// What is still to be asked of a place.
   enum State : std::int32_t {
     kDone,
@@ -85,6 +89,23 @@ struct CellBatch {
   }
 };
 
+/// Some blocks of cells side by side in one tile, as heights are kept (HeightGrid), seen from the
+/// cutter's middle; and which cells of them are asked about, of each of its rows.
+struct CellBlocks {
+  static constexpr int kX = RayPlaces::kBlockX, kY = RayPlaces::kBlockY, kCells = kX * kY;
+  const float* heights = nullptr;
+  int count = 0;  ///< of blocks
+  int i = 0;      ///< the first cell of the first
+  int first[kY]{}, last[kY]{};
+  double x = 0, y = 0;  ///< of the middle of its first cell
+  double cell_x = 0, cell_y = 0;
+  double tip = 0;
+  /// By the square of the distance from the cutter's middle, over `to_part`, up to `last_part`: no
+  /// more than the cutter is high there; and no more than it is from there on out.
+  const double *low_lift = nullptr, *least_lift = nullptr;
+  double to_part = 0, last_part = 0;
+};
+
 /// A straight way that the heights may not have yet. No `length`: there is none.
 struct HeldWay {
   double start_x = 0, start_y = 0, along_x = 1, along_y = 0, length = 0;
@@ -101,12 +122,15 @@ struct CellGround {
   double wall_slope = 0;  ///< what rises by more for each mm of the radius is a wall of the cutter
   double slope = 0;       ///< of its way up; it leaves what is less steep
   double most_above_tip = 0;
+  double fresh = 0;  ///< so thick is a chip straight ahead; 0: a thin one counts by its thickness
+  double thin = 0, thinnest = 0;  ///< EngagementScan::of_thin_chips()
 };
 
 /// By the distance from the cutter's middle, as LiftTable: what a cell in material adds.
 struct CellWeights {
   const double* height_rad = nullptr;
   const double* thick_per_mm = nullptr;
+  const double* upright = nullptr;  ///< a level chip's share that is normal to the cutter there
   const double* steps = nullptr;
 };
 
@@ -119,6 +143,9 @@ struct FrontKernel {
   /// How deep they are, where these heights are known.
   void (*look_along)(const FrontGrid& grid, const RayLine& line, const LiftTable& table,
                      const RayGround& ground, int count, RayPlaces& at);
+  /// Appends x, y and height of what is higher than the cutter may be there, until there is no room
+  /// for another block; how many blocks there was room for.
+  int (*collect)(const CellBlocks& blocks, CellBatch& cells);
   /// From x, y and height: radius, lift and depth; below 0 where it is none of the way, or left by
   /// it.
   void (*take_cells)(const CellGround& ground, const FrontEnd& end, const HeldWay& held,

@@ -5,6 +5,6 @@
 namespace kerf::front_avx2 {
 
 extern const FrontKernel kKernel;
-constinit const FrontKernel kKernel{"avx2", lay_ray, look_along, take_cells, place_cells};
+constinit const FrontKernel kKernel{"avx2", lay_ray, look_along, collect, take_cells, place_cells};
 
 }  // namespace kerf::front_avx2

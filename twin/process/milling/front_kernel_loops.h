@@ -61,6 +61,17 @@ static void lay_ray(const FrontGrid& grid, const RayLine& line, const FrontEnd& 
     at.depth[n] = is_on_way ? 0 : -kFar;
     at.state[n] = has_four ? RayPlaces::kDone : RayPlaces::kAsk;
   }
+  constexpr std::int32_t kSide = RayPlaces::kTileCells, kX = RayPlaces::kBlockX,
+                         kY = RayPlaces::kBlockY, kBlock = kX * kY, kBlocks = kSide / kX * kBlock;
+  KERF_EACH_APART
+  for (int n = 0; n < whole; ++n) {
+    const std::int32_t x = at.i[n] & (kSide - 1), y = at.j[n] & (kSide - 1);
+    const std::int32_t in_x = x & (kX - 1), in_y = y & (kY - 1);
+    const std::int32_t offset = (x - in_x) * kY + in_x + (y - in_y) * (kBlocks / kY) + in_y * kX;
+    at.offset[n] = (x == kSide - 1) | (y == kSide - 1) ? -1 : offset;
+    at.next_x[n] = in_x == kX - 1 ? kBlock - (kX - 1) : 1;
+    at.next_y[n] = in_y == kY - 1 ? kBlocks - (kY - 1) * kX : kX;
+  }
 }
 
 static void look_along(const FrontGrid& grid, const RayLine& line, const LiftTable& table,
@@ -110,6 +121,49 @@ static void look_along(const FrontGrid& grid, const RayLine& line, const LiftTab
     at.state[n] = is_off ? int{RayPlaces::kDone} : known;
     at.depth[n] = is_off ? -kFar : is_level ? level : sloped;
   }
+}
+
+static int collect(const CellBlocks& blocks, CellBatch& cells) {
+  constexpr int kX = CellBlocks::kX, kY = CellBlocks::kY, kCells = CellBlocks::kCells;
+  const double last = blocks.last_part, to_part = blocks.to_part, tip = blocks.tip;
+  const double *const low_lift = blocks.low_lift, *const least_lift = blocks.least_lift;
+  const double high_y = blocks.y + (kY - 1) * blocks.cell_y;
+  const double near_y = most_of(most_of(blocks.y, -high_y), 0.0), near_y2 = near_y * near_y;
+  double y[kCells], y2[kCells];
+  std::int32_t first[kCells], past[kCells];
+  for (int n = 0; n < kCells; ++n) {
+    y[n] = blocks.y + n / kX * blocks.cell_y, y2[n] = y[n] * y[n];
+    first[n] = blocks.first[n / kX] - blocks.i, past[n] = blocks.last[n / kX] - blocks.i;
+  }
+  int count = cells.count;
+  for (int block = 0; block < blocks.count; ++block) {
+    if (count + kCells > CellBatch::kMost) {
+      cells.count = count;
+      return block;
+    }
+    const float* const heights = blocks.heights + block * kCells;
+    float highest = heights[0];
+    for (int n = 1; n < kCells; ++n) highest = heights[n] > highest ? heights[n] : highest;
+    const double x = blocks.x + block * kX * blocks.cell_x, high_x = x + (kX - 1) * blocks.cell_x;
+    const double near_x = most_of(most_of(x, -high_x), 0.0);
+    const int nearest = static_cast<int>(least_of((near_x * near_x + near_y2) * to_part, last));
+    if (static_cast<double>(highest) <= tip + least_lift[nearest]) continue;
+    double at_x[kCells], height[kCells];
+    std::int32_t is_over[kCells];
+    for (int n = 0; n < kCells; ++n) {
+      const std::int32_t i = block * kX + n % kX;
+      at_x[n] = x + n % kX * blocks.cell_x, height[n] = static_cast<double>(heights[n]);
+      const int k = static_cast<int>(least_of((at_x[n] * at_x[n] + y2[n]) * to_part, last));
+      const bool is_asked = (i >= first[n]) & (i <= past[n]);
+      is_over[n] = is_asked & (height[n] > tip + low_lift[k]) ? 1 : 0;
+    }
+    for (int n = 0; n < kCells; ++n) {
+      cells.x[count] = at_x[n], cells.y[count] = y[n], cells.height[count] = height[n];
+      count += is_over[n];
+    }
+  }
+  cells.count = count;
+  return blocks.count;
 }
 
 static void take_cells(const CellGround& ground, const FrontEnd& end, const HeldWay& held,
@@ -212,6 +266,18 @@ static void place_cells(const CellGround& ground, const LiftTable& table,
     cells.radius[n] = radius;
     cells.share[n] = least_of(1.0, thick[k] * cells.depth[n]) * height_rad[k];
     cells.spread[n] = steps[k];
+  }
+  if (ground.fresh > 0) {
+    const double* const upright = weights.upright;
+    const double half = 0.5 * ground.fresh, thin = ground.thin, thinnest = ground.thinnest;
+    KERF_EACH_APART
+    for (int n = 0; n < count; ++n) {
+      const double radius = cells.radius[n];
+      const int k = static_cast<int>(radius * scale);
+      const double chip = within(half * upright[k] * (cells.ahead[n] / radius), thinnest, thin);
+      const double counts = thick[k] * (thin / chip);
+      cells.share[n] = least_of(1.0, counts * cells.depth[n]) * height_rad[k];
+    }
   }
   KERF_EACH_APART
   for (int n = 0; n < count; ++n) {

@@ -12,8 +12,12 @@ extern const FrontKernel kKernel;
 
 namespace {
 
-constexpr FrontKernel kPlain{"plain", front_plain::lay_ray, front_plain::look_along,
-                             front_plain::take_cells, front_plain::place_cells};
+constexpr FrontKernel kPlain{"plain",
+                             front_plain::lay_ray,
+                             front_plain::look_along,
+                             front_plain::collect,
+                             front_plain::take_cells,
+                             front_plain::place_cells};
 
 }  // namespace
 

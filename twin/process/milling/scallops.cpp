@@ -24,11 +24,18 @@ void ScallopScan::read(bool is_row, int line) {
   tool_of_.resize(z_.size());
   numbers_.resize(z_.size());
   owners_.read_present_cut_ids(is_row ? 0 : line, is_row ? line : 0, is_row, numbers_);
+  if (is_row) {
+    const HeightGrid::Row row(heights_, line);
+    const float floor = heights_.floor_mm();
+    for (int i = 0; i < count; ++i)
+      z_[static_cast<std::size_t>(i)] = static_cast<double>(std::max(floor, row.kept(i)));
+  } else {
+    for (int j = 0; j < count; ++j)
+      z_[static_cast<std::size_t>(j)] = static_cast<double>(heights_.height(line, j));
+  }
   std::uint32_t last = MeshPatch::kNotCut;
   int tool = -1;
   for (std::size_t k = 0; k < z_.size(); ++k) {
-    const auto at = static_cast<int>(k);
-    z_[k] = static_cast<double>(is_row ? heights_.height(at, line) : heights_.height(line, at));
     if (numbers_[k] != last) tool = ways_.round_tool_of(numbers_[k]);
     last = numbers_[k];
     tool_of_[k] = tool;
@@ -36,10 +43,13 @@ void ScallopScan::read(bool is_row, int line) {
 }
 
 bool ScallopScan::is_crest(std::size_t k) const {
+  // Few bend down at all.
+  const double bend = z_[k - 1] - 2 * z_[k] + z_[k + 1];
+  if (bend >= -kRounding_mm) return false;
   const int tool = tool_of_[k];
   if (tool < 0 || tool_of_[k - 1] != tool || tool_of_[k + 1] != tool) return false;
   const double least = kBendsDown * edge_mm_ * edge_mm_ / ways_.radius_mm(tool) + kRounding_mm;
-  return z_[k - 1] - 2 * z_[k] + z_[k + 1] < -least;
+  return bend < -least;
 }
 
 /// Where what rises on one side meets what falls on the other.
@@ -78,9 +88,11 @@ void ScallopScan::take(bool is_row, int line, const Crest& from, const Crest& to
   const auto first = static_cast<std::size_t>(std::ceil(from.at));
   const auto last = static_cast<std::size_t>(std::floor(to.at));
   std::size_t deepest = first;
+  double most = below(first);
   for (std::size_t k = first; k <= last; ++k) {
     if (tool_of_[k] != tool) return;
-    if (below(k) > below(deepest)) deepest = k;
+    const double deep = below(k);
+    if (deep > most) most = deep, deepest = k;
   }
   if (deepest <= first || deepest >= last) return;
   const double a = below(deepest - 1), b = below(deepest), c = below(deepest + 1);
