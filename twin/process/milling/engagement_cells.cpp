@@ -193,19 +193,18 @@ void EngagementScan::collect_row(const CellRow& row, int each, CellBatch& cells)
     const auto k = static_cast<std::size_t>((x * x + y2) * to_part);
     // No higher than the profile somewhat farther in.
     cells.x[cells.count] = x, cells.y[cells.count] = row.y, cells.height[cells.count] = height;
-    cells.count += height > row.tip + low_lift_[k] ? 1 : 0;
+    cells.count += height > row.tip + static_cast<double>(low_lift_[k]) ? 1 : 0;
   }
 }
 
-/// All cells of as many rows as blocks are high that are higher than that, block by block: of those
-/// not one is looked at where the highest of them is below the profile at the nearest.
+/// All cells of as many rows as blocks are high that are higher than that, block by block.
 void EngagementScan::collect_blocks(const Station& station, std::span<const CellRow> rows,
                                     CellFront& front) const {
   constexpr int kSide = HeightGrid::kTileCells, kX = CellBlocks::kX;
   CellBlocks blocks;
   blocks.cell_x = heights_->cell_x_mm(), blocks.cell_y = heights_->cell_y_mm();
   blocks.y = rows[0].y, blocks.tip = rows[0].tip;
-  blocks.low_lift = low_lift_.data(), blocks.least_lift = least_lift_.data();
+  blocks.low_lift = low_lift_.data();
   blocks.to_part = kLifts / (radius_ * radius_), blocks.last_part = kLifts + 1;
   int first = std::numeric_limits<int>::max(), last = -1;
   for (std::size_t n = 0; n < rows.size(); ++n) {

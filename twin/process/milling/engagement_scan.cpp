@@ -89,11 +89,9 @@ void EngagementScan::set_cutter(const Cutter& cutter) {
   low_lift_.resize(kLifts + 2);
   for (int k = 0; k <= kLifts + 1; ++k) {
     const double inner = std::max(0.0, std::sqrt(static_cast<double>(k) / kLifts) - 1.0 / kLifts);
-    low_lift_[static_cast<std::size_t>(k)] = cutter.height_mm(std::min(inner, 1.0) * radius_);
+    const double lift = cutter.height_mm(std::min(inner, 1.0) * radius_);
+    low_lift_[static_cast<std::size_t>(k)] = static_cast<float>(lift - kThinnestFilm_mm / 2);
   }
-  least_lift_ = low_lift_;
-  for (std::size_t k = least_lift_.size() - 1; k > 0; --k)
-    least_lift_[k - 1] = std::min(least_lift_[k - 1], least_lift_[k]);
   profile_.assign(kLifts + 2, 0.0);
   for (std::size_t k = 1; k <= kLifts; ++k) {
     const bool rises = static_cast<double>(k) > flat_radius_ * lift_scale_;

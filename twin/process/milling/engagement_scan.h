@@ -377,10 +377,9 @@ class EngagementScan {
     std::vector<double> height_rad, thick_per_mm, upright, steps;
   };
   Weights weights_;
-  double weighed_mm_ = 0;           ///< for cells of that size
-  std::vector<double> low_lift_;    ///< no more than that, over even steps of the radius' square
-  std::vector<double> least_lift_;  ///< .. and no more than that from there on out
-  std::vector<double> profile_;     ///< its length from where it begins to rise, over the radius
+  double weighed_mm_ = 0;        ///< for cells of that size
+  std::vector<float> low_lift_;  ///< less than lift_, over even steps of the radius' square
+  std::vector<double> profile_;  ///< its length from where it begins to rise, over the radius
 
   double from_ = 0, to_ = 1, bin_ = 1, spread_ = 0, apart_mm_ = 0;
   Cost cost_;

@@ -100,9 +100,9 @@ struct CellBlocks {
   double x = 0, y = 0;  ///< of the middle of its first cell
   double cell_x = 0, cell_y = 0;
   double tip = 0;
-  /// By the square of the distance from the cutter's middle, over `to_part`, up to `last_part`: no
-  /// more than the cutter is high there; and no more than it is from there on out.
-  const double *low_lift = nullptr, *least_lift = nullptr;
+  /// By the square of the distance from the cutter's middle, times `to_part`, up to `last_part`:
+  /// lower than the cutter is there by more than floats are rounded by.
+  const float* low_lift = nullptr;
   double to_part = 0, last_part = 0;
 };
 

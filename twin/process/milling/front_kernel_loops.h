@@ -8,6 +8,10 @@
 #error "define KERF_FRONT_NAMESPACE before including front_kernel_loops.h"
 #endif
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 #include "twin/process/milling/front_kernel.h"
 
 // What is written is no table that is read.
@@ -123,47 +127,64 @@ static void look_along(const FrontGrid& grid, const RayLine& line, const LiftTab
   }
 }
 
+using BlockFloats = float __attribute__((vector_size(32)));
+using BlockInts = std::int32_t __attribute__((vector_size(32)));
+static_assert(sizeof(BlockFloats) == CellBlocks::kCells * sizeof(float));
+
+// By reference: without AVX there is no agreed way to hand such a vector over.
+static inline void read_entries(const float* table, const BlockInts& at, BlockFloats& read) {
+#if defined(__AVX2__)
+  read = _mm256_i32gather_ps(table, reinterpret_cast<const __m256i&>(at), 4);
+#else
+  for (int n = 0; n < CellBlocks::kCells; ++n) read[n] = table[at[n]];
+#endif
+}
+/// A bit for each that holds.
+static inline unsigned bits_of(const BlockInts& holds) {
+#if defined(__AVX2__)
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(holds)));
+#else
+  unsigned bits = 0;
+  for (int n = 0; n < CellBlocks::kCells; ++n) bits |= holds[n] != 0 ? 1U << n : 0U;
+  return bits;
+#endif
+}
+
 static int collect(const CellBlocks& blocks, CellBatch& cells) {
-  constexpr int kX = CellBlocks::kX, kY = CellBlocks::kY, kCells = CellBlocks::kCells;
-  const double last = blocks.last_part, to_part = blocks.to_part, tip = blocks.tip;
-  const double *const low_lift = blocks.low_lift, *const least_lift = blocks.least_lift;
-  const double high_y = blocks.y + (kY - 1) * blocks.cell_y;
-  const double near_y = most_of(most_of(blocks.y, -high_y), 0.0), near_y2 = near_y * near_y;
-  double y[kCells], y2[kCells];
-  std::int32_t first[kCells], past[kCells];
+  constexpr int kX = CellBlocks::kX, kCells = CellBlocks::kCells;
+  BlockFloats right{}, y2{}, low{}, height{};
+  BlockInts first{}, last{};
+  double y[kCells];
   for (int n = 0; n < kCells; ++n) {
-    y[n] = blocks.y + n / kX * blocks.cell_y, y2[n] = y[n] * y[n];
-    first[n] = blocks.first[n / kX] - blocks.i, past[n] = blocks.last[n / kX] - blocks.i;
+    y[n] = blocks.y + n / kX * blocks.cell_y;
+    right[n] = static_cast<float>(n % kX * blocks.cell_x);
+    y2[n] = static_cast<float>(y[n] * y[n]);
+    first[n] = blocks.first[n / kX] - blocks.i - n % kX;
+    last[n] = blocks.last[n / kX] - blocks.i - n % kX;
   }
-  int count = cells.count;
-  for (int block = 0; block < blocks.count; ++block) {
-    if (count + kCells > CellBatch::kMost) {
-      cells.count = count;
-      return block;
-    }
+  const auto to_part = static_cast<float>(blocks.to_part), tip = static_cast<float>(blocks.tip);
+  const auto last_part = static_cast<float>(blocks.last_part);
+  int count = cells.count, block = 0;
+  for (; block < blocks.count && count + kCells <= CellBatch::kMost; ++block) {
     const float* const heights = blocks.heights + block * kCells;
-    float highest = heights[0];
-    for (int n = 1; n < kCells; ++n) highest = heights[n] > highest ? heights[n] : highest;
-    const double x = blocks.x + block * kX * blocks.cell_x, high_x = x + (kX - 1) * blocks.cell_x;
-    const double near_x = most_of(most_of(x, -high_x), 0.0);
-    const int nearest = static_cast<int>(least_of((near_x * near_x + near_y2) * to_part, last));
-    if (static_cast<double>(highest) <= tip + least_lift[nearest]) continue;
-    double at_x[kCells], height[kCells];
-    std::int32_t is_over[kCells];
-    for (int n = 0; n < kCells; ++n) {
-      const std::int32_t i = block * kX + n % kX;
-      at_x[n] = x + n % kX * blocks.cell_x, height[n] = static_cast<double>(heights[n]);
-      const int k = static_cast<int>(least_of((at_x[n] * at_x[n] + y2[n]) * to_part, last));
-      const bool is_asked = (i >= first[n]) & (i <= past[n]);
-      is_over[n] = is_asked & (height[n] > tip + low_lift[k]) ? 1 : 0;
-    }
-    for (int n = 0; n < kCells; ++n) {
-      cells.x[count] = at_x[n], cells.y[count] = y[n], cells.height[count] = height[n];
-      count += is_over[n];
+    const double left = blocks.x + block * kX * blocks.cell_x;
+    const BlockFloats x = right + static_cast<float>(left);
+    const BlockFloats parts = (x * x + y2) * to_part;
+    const BlockFloats within = parts < last_part ? parts : BlockFloats{} + last_part;
+    read_entries(blocks.low_lift, __builtin_convertvector(within, BlockInts), low);
+    __builtin_memcpy(&height, heights, sizeof height);
+    const int i = block * kX;
+    const BlockInts is_asked = (first <= i) & (last >= i);
+    unsigned bits = bits_of((height - tip > low) & is_asked);
+    for (; bits != 0; bits &= bits - 1) {
+      const int n = __builtin_ctz(bits);
+      cells.x[count] = left + n % kX * blocks.cell_x, cells.y[count] = y[n];
+      cells.height[count] = static_cast<double>(heights[n]);
+      ++count;
     }
   }
   cells.count = count;
-  return blocks.count;
+  return block;
 }
 
 static void take_cells(const CellGround& ground, const FrontEnd& end, const HeldWay& held,
