@@ -139,11 +139,13 @@ void EngagementMeter::flush() {
 }
 
 void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
-  const CutMove part = part_of(*move_, from, to);
+  const bool is_all = from <= 0 && to >= 1;
+  const CutMove part = is_all ? CutMove() : part_of(*move_, from, to);
+  const CutMove& of = is_all ? *move_ : part;
   const double length_mm = (to - from) * length_mm_;
-  const double down_rad = upright_ ? down_of(part, length_mm) : down_rad_;
+  const double down_rad = upright_ ? down_of(of, length_mm) : down_rad_;
   const EngagedWay way{length_mm, (to - from) * duration_s_, down_rad};
-  const EngagementLog::Part told{mean, &part, way, source_, start_s_ + from * duration_s_};
+  const EngagementLog::Part told{mean, &of, way, source_, start_s_ + from * duration_s_};
   if (hearer_) hearer_(told);
   const std::uint32_t pass = log_.add(told);
   if (pass != EngagementLog::kNoPass) taken_.pass = pass;

@@ -279,7 +279,7 @@ class EngagementScan {
   double profile_mm(double radius) const;
   /// What its cells say of a place, in directions from one side to the other.
   struct CellFront {
-    static constexpr int kSteps = 72;
+    static constexpr int kSteps = FrontRays::kSteps;
     static constexpr double kStep = kPi / kSteps;
     int each = 1, rows = 1;  ///< of so many cells in a row, and of so many rows, one is asked
     double across = 1;       ///< so many cells wide is what it stands for

@@ -5,6 +5,15 @@
 
 namespace kerf {
 
+const std::array<double, FrontRays::kSteps + 1>& FrontRays::step_sines() {
+  static const std::array<double, kSteps + 1> sines = [] {
+    std::array<double, kSteps + 1> made{};
+    for (std::size_t k = 0; k <= kSteps; ++k) made[k] = std::sin(step_rad(k));
+    return made;
+  }();
+  return sines;
+}
+
 /// A height that changes evenly: by Simpson's rule, which is right of its products.
 void FrontRays::add(const Direction& from, const Direction& to) {
   span(from, to);

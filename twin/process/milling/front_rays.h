@@ -40,6 +40,7 @@ class FrontRays {
   FrontRays(int count, double radius_mm, bool is_flat)
       : count_(count), radius_mm_(radius_mm), is_flat_(is_flat) {}
   static constexpr int kMost = 18;
+  static constexpr std::size_t kSteps = 72;  ///< of take()
 
   /// `contact_at(angle)` gives a FrontContact.
   template <class ContactAt>
@@ -49,8 +50,8 @@ class FrontRays {
   /// `wall_at(angle)`: what stands over the profile's end besides (edge_mm) and how deep that is;
   /// asked for at the steps, and more closely where it begins or ends.
   template <class WallAt>
-  void take(std::span<const FrontContact> contacts, const WallAt& wall_at, double low_mm,
-            double high_mm);
+  void take(std::span<const FrontContact, kSteps + 1> contacts, const WallAt& wall_at,
+            double low_mm, double high_mm);
   /// angle, width, depth, entry, exit, climb, effective diameter and edge of all that was found.
   EngagementLook look(bool anticlockwise) const;
 
@@ -67,10 +68,12 @@ class FrontRays {
     double right_mm = 1, left_mm = 0;
   };
   static Direction direction_of(double angle, const FrontContact& contact) {
+    return direction_of(angle, contact.radius_mm > 0 ? std::sin(angle) : 0, contact);
+  }
+  static Direction direction_of(double angle, double sine, const FrontContact& contact) {
     Direction at{angle, contact.high_mm};
     if (contact.radius_mm <= 0) return at;
-    const double inner_mm = contact.inner_mm * std::sin(angle);
-    const double outer_mm = contact.radius_mm * std::sin(angle);
+    const double inner_mm = contact.inner_mm * sine, outer_mm = contact.radius_mm * sine;
     at.right_mm = std::min(inner_mm, outer_mm), at.left_mm = std::max(inner_mm, outer_mm);
     return at;
   }
@@ -87,9 +90,12 @@ class FrontRays {
     widen(contact.radius_mm, angle);
   }
   void widen(double radius_mm, double angle) {
-    low_mm_ = std::min(low_mm_, radius_mm * std::sin(angle));
-    high_mm_ = std::max(high_mm_, radius_mm * std::sin(angle));
+    const double left_mm = radius_mm * std::sin(angle);
+    low_mm_ = std::min(low_mm_, left_mm), high_mm_ = std::max(high_mm_, left_mm);
   }
+  /// Of the k-th of kSteps, from straight ahead.
+  static double step_rad(std::size_t k) { return kPi * (static_cast<double>(k) / kSteps - 0.5); }
+  static const std::array<double, kSteps + 1>& step_sines();
   /// All between the two is in material.
   void count(double from, double to) {
     if (to <= from) return;
@@ -181,20 +187,17 @@ void FrontRays::find_edge(const ContactAt& contact_at, int k, bool is) {
 }
 
 template <class WallAt>
-void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_at, double low_mm,
-                     double high_mm) {
+void FrontRays::take(std::span<const FrontContact, kSteps + 1> contacts, const WallAt& wall_at,
+                     double low_mm, double high_mm) {
   low_mm_ = low_mm, high_mm_ = high_mm;
-  const auto steps = static_cast<double>(contacts.size() - 1);
+  const std::array<double, kSteps + 1>& sines = step_sines();
   // Where it begins and ends is somewhere between two steps.
-  apart_mm_ = radius_mm_ * kPi / steps;
-  const auto angle_of = [steps](std::size_t k) {
-    return kPi * (static_cast<double>(k) / steps - 0.5);
-  };
+  apart_mm_ = radius_mm_ * kPi / kSteps;
   // Steps at the very sides are a little before them: what is at a side itself is passed by.
   const auto wall_of = [&](std::size_t k) {
-    return wall_at(std::clamp(angle_of(k), kRim_rad - kPi / 2, kPi / 2 - kRim_rad));
+    return wall_at(std::clamp(step_rad(k), kRim_rad - kPi / 2, kPi / 2 - kRim_rad));
   };
-  const auto note_wall = [&](const FrontContact& at, const FrontContact& wall, double angle) {
+  const auto note_wall = [&](const FrontContact& at, const FrontContact& wall, std::size_t k) {
     FrontContact both = at;
     if (wall.edge_mm > 0) {
       both.radius_mm = radius_mm_;
@@ -202,23 +205,27 @@ void FrontRays::take(std::span<const FrontContact> contacts, const WallAt& wall_
       both.edge_mm += wall.edge_mm;
     }
     if (both.radius_mm <= 0) return;
-    const Direction across = direction_of(angle, both);
+    const Direction across = direction_of(step_rad(k), sines[k], both);
     span(across, across);
     found_.deep_mm = std::max(found_.deep_mm, both.deep_mm);
     found_.effective_mm = std::max(found_.effective_mm, 2 * both.radius_mm);
     found_.contact_mm = std::max(found_.contact_mm, both.edge_mm);
-    if (wall.edge_mm > 0) widen(radius_mm_, angle);
+    if (wall.edge_mm > 0) widen(radius_mm_, step_rad(k));
   };
   FrontContact before = wall_of(0);
-  note_wall(contacts[0], before, angle_of(0));
-  for (std::size_t k = 1; k < contacts.size(); ++k) {
+  note_wall(contacts[0], before, 0);
+  Direction last = direction_of(step_rad(0), sines[0], contacts[0]);
+  for (std::size_t k = 1; k <= kSteps; ++k) {
     const FrontContact wall = wall_of(k);
-    note_wall(contacts[k], wall, angle_of(k));
-    span(direction_of(angle_of(k - 1), contacts[k - 1]), direction_of(angle_of(k), contacts[k]));
-    const double from = angle_of(k - 1), to = angle_of(k);
+    note_wall(contacts[k], wall, k);
+    const Direction next = direction_of(step_rad(k), sines[k], contacts[k]);
+    span(last, next);
+    last = next;
+    const double from = step_rad(k - 1), to = step_rad(k);
     const double low = contacts[k - 1].high_mm, high = contacts[k].high_mm;
     if ((before.edge_mm > 0) == (wall.edge_mm > 0)) {
-      add({from, low + before.edge_mm}, {to, high + wall.edge_mm});
+      const double from_mm = low + before.edge_mm, to_mm = high + wall.edge_mm;
+      if (from_mm > 0 || to_mm > 0) add({from, from_mm}, {to, to_mm});
     } else {
       const bool begins = wall.edge_mm > 0;
       const FrontContact& known = begins ? wall : before;

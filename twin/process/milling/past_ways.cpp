@@ -171,6 +171,12 @@ bool PastWays::line_covers(const Way& way, const Tool& tool, const Vec2& point, 
   const auto low_at = [&](double t) {
     return z + rise * t + tool.lift_mm(std::max(0.0, distance(t) - margin_mm));
   };
+  // A ball is lowest where its sphere, cut along the way, leans as the way does.
+  if (tool.is_ball) {
+    const double slope = rise / std::sqrt(length2);
+    const double lowest = nearest - slope * half / std::sqrt(1 + slope * slope);
+    return low_at(std::clamp(lowest, first, last)) <= z_mm + margin_mm;
+  }
   return golden_section(low_at, first, last, kSlopeSteps).least <= z_mm + margin_mm;
 }
 
@@ -236,7 +242,6 @@ double PastWays::line_height(std::uint32_t way, const Tool& tool, const Vec2& po
   const double first = std::max(0.0, nearest - half), last = std::min(1.0, nearest + half);
   if (first > last) return kNotThere;
   if (tool.is_flat) return z + rise * (rise < 0 ? last : first);
-  // A ball is lowest where its sphere, cut along the way, leans as the way does.
   if (tool.is_ball)
     return surface(std::clamp(nearest - line.slope * half / line.steepness, first, last));
   return golden_section(surface, first, last, kHeightSteps).least;

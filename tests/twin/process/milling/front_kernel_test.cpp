@@ -162,5 +162,43 @@ TEST(FrontKernel, CellsAreInMaterialThatTheHeldWayAndTheEndHaveLeft) {
   }
 }
 
+/// Blocks of 2 x 4 cells of a plain at z = 0 that rises by 1 to the right, a cone of 1 in 1 with
+/// its tip at z = -1: what is higher than that, and asked about, is collected, to a bit of slack.
+TEST(FrontKernel, BlocksGiveTheCellsThatAreHigherThanTheCutter) {
+  constexpr int kBlocks = 5, kCells = CellBlocks::kCells;
+  std::vector<float> cone(1026), heights;
+  for (std::size_t k = 0; k < cone.size(); ++k)
+    cone[k] = static_cast<float>(8 * std::sqrt(static_cast<double>(k) / 1024));
+  for (int k = 0; k < kBlocks * kCells; ++k)
+    heights.push_back(static_cast<float>(k / kCells * 2 + k % 2) - 2.25F);
+  CellBlocks blocks;
+  blocks.heights = heights.data(), blocks.count = kBlocks, blocks.i = 10;
+  for (int row = 0; row < CellBlocks::kY; ++row)
+    blocks.first[row] = row == 2 ? 13 : 10, blocks.last[row] = row == 3 ? 17 : 19;
+  blocks.x = -3, blocks.y = -2, blocks.cell_x = blocks.cell_y = 1, blocks.tip = -1;
+  blocks.low_lift = cone.data(), blocks.to_part = 1024 / 64.0, blocks.last_part = 1025;
+  for (const FrontKernel& kernel : front_kernels()) {
+    CellBatch cells{};
+    EXPECT_EQ(kernel.collect(blocks, cells), kBlocks);
+    int found = 0;
+    for (int row = 0; row < CellBlocks::kY; ++row) {
+      for (int i = blocks.first[row]; i <= blocks.last[row]; ++i) {
+        const double x = -3 + (i - 10), y = -2 + row, height = i - 10 - 2.25;
+        const double over = height - (-1 + std::hypot(x, y));
+        if (std::abs(over) < 0.1) continue;  // within a step of the table
+        bool has = false;
+        for (int n = 0; n < cells.count; ++n)
+          has = has || (cells.x[n] == x && cells.y[n] == y && cells.height[n] == height);
+        EXPECT_EQ(has, over > 0) << kernel.name << " " << i << " " << row;
+        found += has ? 1 : 0;
+      }
+    }
+    EXPECT_GT(found, 8) << kernel.name;
+    // No room for another block.
+    cells.count = CellBatch::kMost - kCells + 1;
+    EXPECT_EQ(kernel.collect(blocks, cells), 0) << kernel.name;
+  }
+}
+
 }  // namespace
 }  // namespace kerf
