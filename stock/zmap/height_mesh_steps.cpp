@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/portable_math.h"
+
 namespace kerf {
 namespace {
 
@@ -38,9 +40,18 @@ struct StepSquares::Square {
   glm::dvec2 low{0}, high{0};
 };
 
-StepSquares::StepSquares(const Relief& relief, std::span<const CellStep> steps)
+/// How it is divided.
+struct StepSquares::Plan {
+  Layout::Kind kind = Layout::Kind::kAround;
+  std::size_t cut_off = 0;  ///< kSaddle: this corner and the opposite one
+  glm::dvec2 middle{0};     ///< kAround: where the walls meet
+  bool has_ways = false;
+  std::array<glm::dvec2, 4> ways{};  ///< as find_ways() has them
+};
+
+StepSquares::StepSquares(const Relief& relief, std::span<const CellStep> steps, bool given_only)
     : relief_(relief),
-      has_holes_(relief.has_holes()),
+      has_holes_(relief.has_holes() && !given_only),
       first_key_(static_cast<NodeKey>(2 * relief.node_count())),
       divided_(relief.node_count()) {
   take_steps(steps);
@@ -210,19 +221,29 @@ std::optional<glm::dvec2> StepSquares::course(Corner low, std::size_t through) c
   return std::nullopt;
 }
 
-/// Where walls meet that cross all edges with a step, straight on from the squares beyond; none
-/// where that is not within the square, or two are as good as one.
-std::optional<glm::dvec2> StepSquares::meeting(const Square& s) const {
+/// Into the square, of the walls that cross its edges, straight on from the squares beyond. False:
+/// of one nobody knows.
+bool StepSquares::find_ways(const Square& s, std::array<glm::dvec2, 4>& ways) const {
   const Corner low = s.corner[0];
-  glm::dmat2 sum(0);
-  glm::dvec2 right(0), first(0);
-  double straight = -1;
   for (std::size_t w = 0; w < s.count; ++w) {
     const std::size_t k = s.walls[w];
     const std::optional<glm::dvec2> way =
         course({low.i + kAside[k][0], low.j + kAside[k][1]}, (k + 2) % 4);
-    if (!way) return std::nullopt;
-    const glm::dvec2 along = *way / glm::length(*way);
+    if (!way) return false;
+    ways[w] = *way;
+  }
+  return true;
+}
+
+/// Where walls that come in by these ways meet; none where that is not within the square, or two
+/// are as good as one.
+std::optional<glm::dvec2> StepSquares::meeting(const Square& s,
+                                               const std::array<glm::dvec2, 4>& ways) const {
+  glm::dmat2 sum(0);
+  glm::dvec2 right(0), first(0);
+  double straight = -1;
+  for (std::size_t w = 0; w < s.count; ++w) {
+    const glm::dvec2 along = ways[w] / glm::length(ways[w]);
     if (w == 0)
       first = along;
     else
@@ -230,7 +251,7 @@ std::optional<glm::dvec2> StepSquares::meeting(const Square& s) const {
     // The part across the wall of how far the meeting is from it has the least square.
     const glm::dmat2 across = glm::dmat2(1) - glm::outerProduct(along, along);
     sum += across;
-    right += across * glm::dvec2(place(s.before[k]));
+    right += across * glm::dvec2(place(s.before[s.walls[w]]));
   }
   if (s.count == 2 && straight > kSharpTurn) return std::nullopt;
   if (!(glm::determinant(sum) > kLeastCrossing)) return std::nullopt;
@@ -282,7 +303,8 @@ void StepSquares::add_polygon(std::span<const NodeKey> polygon, std::vector<Node
 }
 
 /// From the wall at edge a to that at edge b, by the corners between them. How many keys.
-std::size_t StepSquares::go_round(const Square& s, std::size_t a, std::size_t b, NodeKey* keys) {
+std::size_t StepSquares::go_round(const Square& s, std::size_t a, std::size_t b,
+                                  NodeKey* keys) const {
   std::size_t n = 0;
   keys[n++] = s.after[a];
   for (std::size_t k = (a + 1) % 4;; k = (k + 1) % 4) {
@@ -357,59 +379,134 @@ void StepSquares::add_around(const Square& s, const glm::dvec2& middle,
   }
 }
 
+StepSquares::Plan StepSquares::plan(const Square& s) const {
+  Plan out;
+  out.middle = 0.5 * (s.low + s.high);
+  if (s.count < 2) return out;
+  out.has_ways = find_ways(s, out.ways);
+  const std::optional<glm::dvec2> met = out.has_ways ? meeting(s, out.ways) : std::nullopt;
+  if (met) out.middle = *met;
+  if (s.count == 2 && !met) out.kind = Layout::Kind::kChord;
+  if (s.count > 2 && !met) {
+    out.middle = glm::dvec2(0);
+    for (std::size_t w = 0; w < s.count; ++w)
+      out.middle += glm::dvec2(place(s.before[s.walls[w]])) / static_cast<double>(s.count);
+  }
+  if (s.count < 4) return out;
+  std::array<float, 4> z{};
+  for (std::size_t c = 0; c < 4; ++c)
+    z[c] = 0.5f * (position_mm(s.after[(c + 3) % 4]).z + position_mm(s.before[c]).z);
+  const bool is_saddle =
+      std::min(z[0], z[2]) > std::max(z[1], z[3]) || std::min(z[1], z[3]) > std::max(z[0], z[2]);
+  if (!is_saddle) return out;
+  const auto area = [&](std::size_t c) {
+    const glm::dvec2 at(place(relief_.top_key(s.corner[c].i, s.corner[c].j)));
+    return std::abs(
+        cross(glm::dvec2(place(s.before[c])) - at, glm::dvec2(place(s.after[(c + 3) % 4])) - at));
+  };
+  const auto is_hole = [&](std::size_t c) {
+    return !relief_.node_is_solid(s.corner[c].i, s.corner[c].j);
+  };
+  bool cuts_even = area(0) + area(2) <= area(1) + area(3);
+  // A hole hangs together with holes only.
+  if (is_hole(0) != is_hole(2)) cuts_even = true;
+  if (is_hole(1) != is_hole(3)) cuts_even = false;
+  out.kind = Layout::Kind::kSaddle;
+  out.cut_off = cuts_even ? 0 : 1;
+  return out;
+}
+
 void StepSquares::add_square(int i, int j, std::vector<NodeTriangle>& out) {
   const Square s = square(i, j);
+  const Plan plan = this->plan(s);
   const auto number = static_cast<std::size_t>(
       std::lower_bound(squares_.begin(), squares_.end(), corner(i, j)) - squares_.begin());
   Layout& layout = layouts_[number];
-  glm::dvec2 middle = 0.5 * (s.low + s.high);
-  if (s.count == 2) {
+  layout = {plan.kind, static_cast<std::uint8_t>(plan.cut_off), 0};
+  if (plan.kind == Layout::Kind::kChord) {
     const std::size_t a = s.walls[0], b = s.walls[1];
-    const std::optional<glm::dvec2> sharp = meeting(s);
-    if (!sharp) {
-      add_chord(s, a, b, out);
-      // What lies on the other side of it; the wall is there already.
-      std::vector<NodeTriangle> other;
-      add_chord(s, b, a, other);
-      out.insert(out.end(), other.begin(), other.end() - 2);
-      return;
-    }
-    middle = *sharp;
-  } else if (s.count > 2) {
-    glm::dvec2 mean(0);
-    for (std::size_t w = 0; w < s.count; ++w)
-      mean += glm::dvec2(place(s.before[s.walls[w]])) / static_cast<double>(s.count);
-    middle = meeting(s).value_or(mean);
+    add_chord(s, a, b, out);
+    // What lies on the other side of it; the wall is there already.
+    std::vector<NodeTriangle> other;
+    add_chord(s, b, a, other);
+    out.insert(out.end(), other.begin(), other.end() - 2);
+    return;
   }
-  if (s.count == 4) {
-    std::array<float, 4> z{};
-    for (std::size_t c = 0; c < 4; ++c)
-      z[c] = 0.5f * (position_mm(s.after[(c + 3) % 4]).z + position_mm(s.before[c]).z);
-    const bool is_saddle =
-        std::min(z[0], z[2]) > std::max(z[1], z[3]) || std::min(z[1], z[3]) > std::max(z[0], z[2]);
-    if (is_saddle) {
-      const auto area = [&](std::size_t c) {
-        const glm::dvec2 at(place(relief_.top_key(s.corner[c].i, s.corner[c].j)));
-        return std::abs(cross(glm::dvec2(place(s.before[c])) - at,
-                              glm::dvec2(place(s.after[(c + 3) % 4])) - at));
-      };
-      const auto is_hole = [&](std::size_t c) {
-        return !relief_.node_is_solid(s.corner[c].i, s.corner[c].j);
-      };
-      bool cuts_even = area(0) + area(2) <= area(1) + area(3);
-      // A hole hangs together with holes only.
-      if (is_hole(0) != is_hole(2)) cuts_even = true;
-      if (is_hole(1) != is_hole(3)) cuts_even = false;
-      layout = {Layout::Kind::kSaddle, static_cast<std::uint8_t>(cuts_even ? 0 : 1), 0};
-      return add_saddle(s, layout.cut_off, out);
-    }
-  }
-  layout.kind = Layout::Kind::kAround;
+  if (plan.kind == Layout::Kind::kSaddle) return add_saddle(s, plan.cut_off, out);
   const std::size_t first_own = positions_.size();
-  add_around(s, middle, out);
+  add_around(s, plan.middle, out);
   for (std::size_t own = first_own; own < positions_.size(); ++own)
     if (!(positions_[own].z > relief_.floor_mm()))
       layout.floor = static_cast<NodeKey>(first_key_ + own);
+}
+
+/// How high the wall at edge k is, as one goes round: negative where it goes down.
+double StepSquares::wall_mm(const Square& s, std::size_t k) const {
+  const Edge& edge = edges_[s.edge[k]];
+  const Corner a = s.corner[k], b = s.corner[(k + 1) % 4];
+  const float from = relief_.node_mm(a.i, a.j), to = relief_.node_mm(b.i, b.j);
+  const float high = std::max(from, to);
+  const auto wall = static_cast<double>(high - std::clamp(edge.foot_mm, std::min(from, to), high));
+  return from < to ? wall : -wall;
+}
+
+/// Seen from above, of what lies between the walls at edges a and b, and `middle`.
+double StepSquares::part_mm2(const Square& s, std::size_t a, std::size_t b,
+                             const glm::dvec2* middle) const {
+  std::array<NodeKey, 8> keys;
+  const std::size_t count = go_round(s, a, b, keys.data());
+  const glm::dvec2 from = middle ? *middle : glm::dvec2(place(keys[0]));
+  double twice_mm2 = 0;
+  for (std::size_t n = 0; n + 1 < count; ++n)
+    twice_mm2 += cross(glm::dvec2(place(keys[n])) - from, glm::dvec2(place(keys[n + 1])) - from);
+  return 0.5 * twice_mm2;
+}
+
+/// Of a square with one wall, which runs on as a chord in the mesh: what an arc, curved as its
+/// course beyond the square says, takes of the part behind the first edge.
+double StepSquares::bulge_mm2(const Square& s, const Plan& plan) const {
+  if (!plan.has_ways) return 0;
+  const auto& way = plan.ways;
+  const double in = glm::length(way[0]), out = glm::length(way[1]);
+  if (-glm::dot(way[0], way[1]) < kSharpTurn * in * out) return 0;
+  const double turn_rad = portable::asin(cross(way[0], -way[1]) / (in * out));
+  const double chord = glm::distance(glm::dvec2(place(s.before[s.walls[0]])),
+                                     glm::dvec2(place(s.before[s.walls[1]])));
+  const double per_mm = turn_rad / (chord + 0.5 * (in + out));
+  return per_mm * chord * chord * chord / 12;
+}
+
+double StepSquares::surplus_mm3(int i, int j) const {
+  const Square s = square(i, j);
+  const Plan plan = this->plan(s);
+  const glm::dvec2 size = s.high - s.low;
+  const double quarter_mm2 = 0.25 * size.x * size.y;
+  // Of the part behind each wall. Walls that end within the square do not add up to nothing.
+  std::array<double, 4> level_mm{};
+  for (std::size_t w = 1; w < s.count; ++w) level_mm[w] = level_mm[w - 1] + wall_mm(s, s.walls[w]);
+  const double open_mm = level_mm[s.count - 1] + wall_mm(s, s.walls[0]);
+  for (std::size_t w = 1; w < s.count; ++w)
+    level_mm[w] -= open_mm * static_cast<double>(w) / static_cast<double>(s.count);
+  const bool is_saddle = plan.kind == Layout::Kind::kSaddle;
+  if (is_saddle) {
+    const std::size_t hangs = plan.cut_off;
+    level_mm[hangs] = level_mm[hangs + 2] = 0.5 * (level_mm[hangs] + level_mm[hangs + 2]);
+  }
+  double sum = plan.kind == Layout::Kind::kChord ? level_mm[1] * bulge_mm2(s, plan) : 0;
+  for (std::size_t w = 0; w < s.count; ++w) {
+    const std::size_t a = s.walls[w], b = s.walls[(w + 1) % s.count];
+    const auto corners = static_cast<double>(s.count == 1 ? 4 : (b + 4 - a) % 4);
+    double mm2;
+    if (!is_saddle)
+      mm2 = part_mm2(s, a, b, plan.kind == Layout::Kind::kAround ? &plan.middle : nullptr);
+    else if (w % 2 != plan.cut_off)
+      mm2 = part_mm2(s, a, b, nullptr);
+    else  // half of what is not cut off
+      mm2 = 2 * quarter_mm2 - 0.5 * (part_mm2(s, (w + 1) % 4, (w + 2) % 4, nullptr) +
+                                     part_mm2(s, (w + 3) % 4, w, nullptr));
+    sum += level_mm[w] * (mm2 - corners * quarter_mm2);
+  }
+  return sum;
 }
 
 void StepSquares::add_surface(std::vector<NodeTriangle>& out) {

@@ -26,8 +26,9 @@ namespace kerf {
 class StepSquares {
  public:
   /// `relief` must outlive this. `steps` in the order of cell_steps(). Between a cell with material
-  /// and one without there is a step in any case, half way where none is given.
-  StepSquares(const Relief& relief, std::span<const CellStep> steps);
+  /// and one without there is a step in any case, half way where none is given, unless
+  /// `given_only`: for surplus_mm3() alone.
+  StepSquares(const Relief& relief, std::span<const CellStep> steps, bool given_only = false);
 
   /// The square whose low corner is node (i, j): has been divided; has a part without material.
   bool is_divided(int i, int j) const { return divided_[corner(i, j)]; }
@@ -43,6 +44,10 @@ class StepSquares {
   /// The surface and the walls in the divided squares; and the floor in those that are open.
   void add_surface(std::vector<NodeTriangle>& out);
   void add_floor(std::vector<NodeTriangle>& out);
+  /// How much more material one divided square has than its corners say, which stand for a quarter
+  /// each: of its walls alone, from their feet up to the higher side. What rises beside them is as
+  /// the corners have it.
+  double surplus_mm3(int i, int j) const;
 
   /// Keys from Relief's last one on.
   bool is_own(NodeKey key) const { return key >= first_key_; }
@@ -56,6 +61,7 @@ class StepSquares {
     float foot_mm;
   };
   struct Square;
+  struct Plan;
   struct Corner {
     int i, j;
   };
@@ -75,10 +81,15 @@ class StepSquares {
   Square square(int i, int j) const;
   std::optional<glm::dvec2> course(Corner low, std::size_t through) const;
   void put_border_points();
-  std::optional<glm::dvec2> meeting(const Square& s) const;
+  bool find_ways(const Square& s, std::array<glm::dvec2, 4>& ways) const;
+  std::optional<glm::dvec2> meeting(const Square& s, const std::array<glm::dvec2, 4>& ways) const;
+  Plan plan(const Square& s) const;
+  double wall_mm(const Square& s, std::size_t k) const;
+  double bulge_mm2(const Square& s, const Plan& plan) const;
+  double part_mm2(const Square& s, std::size_t a, std::size_t b, const glm::dvec2* middle) const;
   NodeKey own_key(const glm::dvec2& xy, float z);
   void add_square(int i, int j, std::vector<NodeTriangle>& out);
-  std::size_t go_round(const Square& s, std::size_t a, std::size_t b, NodeKey* keys);
+  std::size_t go_round(const Square& s, std::size_t a, std::size_t b, NodeKey* keys) const;
   void add_chord(const Square& s, std::size_t a, std::size_t b, std::vector<NodeTriangle>& out);
   void add_around(const Square& s, const glm::dvec2& middle, std::vector<NodeTriangle>& out);
   void add_saddle(const Square& s, std::size_t cut_off, std::vector<NodeTriangle>& out);

@@ -69,16 +69,22 @@ void drop_idle(const TileGrid& grid, std::size_t tile, std::vector<WallMark>& ma
   marks.resize(kept);
 }
 
-/// Which neighbours are one smooth surface, as SurfaceSlopes has it.
+/// Which neighbours are one smooth surface.
 class Smoothness {
  public:
-  explicit Smoothness(const TileGrid& grid)
-      : grid_(grid), edge_(static_cast<float>(std::max(grid.cell_x_mm(), grid.cell_y_mm()))) {}
+  Smoothness(const TileGrid& grid, WallKind kind)
+      : grid_(grid),
+        edge_(static_cast<float>(std::max(grid.cell_x_mm(), grid.cell_y_mm()))),
+        kind_(kind) {}
   bool is_smooth(const Cell& a, int axis) const {
     const Cell b = along(a, axis, 1);
     if (is_solid(a) != is_solid(b)) return false;
-    return SurfaceSlopes::is_smooth(rise(a, axis), rise(along(a, axis, -1), axis), rise(b, axis),
-                                    edge_);
+    const float step = rise(a, axis), before = rise(along(a, axis, -1), axis),
+                after = rise(b, axis);
+    if (kind_ == WallKind::kSharp) return SurfaceSlopes::is_smooth(step, before, after, edge_);
+    const float goes_on = std::max(step * before, step * after);
+    return std::abs(step) <= SurfaceSlopes::kFlank * edge_ &&
+           step * step <= SurfaceSlopes::kMostSteepening * goes_on;
   }
 
  private:
@@ -93,6 +99,7 @@ class Smoothness {
   }
   const TileGrid& grid_;
   float edge_;
+  WallKind kind_;
 };
 
 /// Of the marks of one way the one behind which most of the material is missing.
@@ -173,8 +180,8 @@ bool is_sound(const WallMark& mark, std::size_t tile, const TileGrid& grid) {
   return is_in(grid, cell) && is_in(grid, neighbour(cell, mark.way()));
 }
 
-std::vector<CellStep> cell_steps(const TileGrid& grid, const WallMarks& table) {
-  const Smoothness smoothness(grid);
+std::vector<CellStep> cell_steps(const TileGrid& grid, const WallMarks& table, WallKind kind) {
+  const Smoothness smoothness(grid, kind);
   std::vector<CellStep> steps;
   for (std::size_t tile = 0; tile < grid.tile_count(); ++tile) {
     const std::vector<WallMark> marks = table.marks(tile, grid);

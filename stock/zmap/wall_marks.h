@@ -105,8 +105,14 @@ class WallMarks {
 /// Of a mark that can be one of the grid's: as files may have it.
 bool is_sound(const WallMark& mark, std::size_t tile, const TileGrid& grid);
 
-/// The walls between middles of cells, in order (by row, then column, then axis). Where the heights
-/// go on smoothly from one cell to the next there is none, whatever marks say.
-std::vector<CellStep> cell_steps(const TileGrid& grid, const WallMarks& marks);
+/// Which marks are walls. Where heights go on smoothly from one cell to the next there is none.
+enum class WallKind : std::uint8_t {
+  kSharp,  ///< as surfaces show them (SurfaceSlopes): no low steps, none in a flank however steep
+  kAll,    ///< all that do not lie in a slope below 45 degrees that goes on beyond the two cells
+};
+
+/// The walls between middles of cells, in order (by row, then column, then axis).
+std::vector<CellStep> cell_steps(const TileGrid& grid, const WallMarks& marks,
+                                 WallKind kind = WallKind::kSharp);
 
 }  // namespace kerf

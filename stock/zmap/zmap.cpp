@@ -28,6 +28,7 @@
 #include "stock/zmap/tile_grid.h"
 #include "stock/zmap/tile_patch.h"
 #include "stock/zmap/wall_marks.h"
+#include "stock/zmap/wall_volume.h"
 
 namespace kerf {
 
@@ -45,6 +46,10 @@ struct ZMap::Impl {
   Impl(TileGrid heights, double blank_volume_mm3, ZMapKernel kernel, int threads)
       : sweeper(std::move(heights), kernel, threads), blank_mm3(blank_volume_mm3) {}
   TileGrid& grid() { return sweeper.grid; }
+  double volume_mm3() {
+    const WallMarks& walls = sweeper.walls();
+    return volume_of(grid()) + wall_volume_mm3(grid(), walls);
+  }
 };
 
 ZMap::ZMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -56,10 +61,10 @@ Result<std::unique_ptr<ZMap>> ZMap::create(const ZMapOptions& options) {
   Result<TileGrid> grid = make_blank_grid(options.blank, options.cell_mm, kMaxCells, tr("a Z-map"),
                                           options.keeps_cut_ids);
   if (!grid) return Error{grid.error()};
-  const double blank_mm3 = volume_of(*grid);
-  auto impl = std::make_unique<Impl>(std::move(*grid), blank_mm3, options.kernel, options.threads);
+  auto impl = std::make_unique<Impl>(std::move(*grid), 0, options.kernel, options.threads);
   impl->sweeper.follow_sides(options.blank);
   impl->sweeper.keep_walls(options.blank.bodies);
+  impl->blank_mm3 = impl->volume_mm3();
   return std::unique_ptr<ZMap>(new ZMap(std::move(impl)));
 }
 
@@ -162,7 +167,7 @@ std::size_t ZMap::cell_count() const {
          static_cast<std::size_t>(impl_->grid().ny());
 }
 double ZMap::blank_mm3() const { return impl_->blank_mm3; }
-double ZMap::remaining_mm3() const { return volume_of(impl_->grid()); }
+double ZMap::remaining_mm3() const { return impl_->volume_mm3(); }
 int ZMap::nx() const { return impl_->grid().nx(); }
 int ZMap::ny() const { return impl_->grid().ny(); }
 float ZMap::height_mm(int i, int j) const { return impl_->grid().height(i, j); }

@@ -31,10 +31,11 @@ struct ZMapOptions {
 /// Workpiece that is solid from the floor of the blank up to a height in each cell. Holds no
 /// undercuts. Reads no files, knows no GL. A cell whose height is the floor holds no material.
 /// Where upright walls stand between the middles of cells is known to 1/512 of a cell
-/// (wall_marks.h): mesh() and save() have it. All else goes by cells: volumes (so that what moves
-/// remove adds up to what is gone), patches, contacts; and digest(), from which walls do not
-/// follow, though both follow from the same cuts, in any order. Source: one-dexel case of T. Van
-/// Hook, "Real-time shaded NC milling display", SIGGRAPH 1986.
+/// (wall_marks.h): mesh(), save(), blank_mm3() and remaining_mm3() have it. All else goes by cells:
+/// what moves remove (CutReport; the sum differs from what is gone by what walls stand beside the
+/// borders of cells), patches, contacts; and digest(), from which walls do not follow, though both
+/// follow from the same cuts, in any order. Source: one-dexel case of T. Van Hook, "Real-time
+/// shaded NC milling display", SIGGRAPH 1986.
 class ZMap final : public StockModel,
                    public PresentHeights,
                    public ColumnSource,
@@ -73,6 +74,7 @@ class ZMap final : public StockModel,
   double cell_mm() const override;
   std::size_t cell_count() const override;
   double blank_mm3() const override;
+  /// About 1 ms for each million cells, and 1 us for each wall between two of them.
   double remaining_mm3() const override;
   std::string digest() const override;
   TriangleMesh mesh(double tolerance_mm) const override;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -12,12 +13,21 @@
 #include "stock/turning/turning_state.h"
 #include "stock/zmap/mmap/mmap_state.h"
 #include "stock/zmap/state_file.h"
+#include "stock/zmap/zmap.h"
 
 namespace {
 
+/// With what its walls say of its volume.
+void parse_heights(const std::string& bytes) {
+  constexpr int kMostCells = 4096;
+  kerf::Result<kerf::SavedState> state = kerf::parse_state(bytes, "fuzz");
+  if (!state || state->grid.nx() > kMostCells / state->grid.ny()) return;
+  (void)kerf::ZMap::of_heights(std::move(*state), 1, kerf::ZMapKernel::kScalar)->remaining_mm3();
+}
+
 /// By every model.
 void parse(const std::string& bytes) {
-  (void)kerf::parse_state(bytes, "fuzz");
+  parse_heights(bytes);
   (void)kerf::parse_columns(bytes, "fuzz");
   (void)kerf::octree::parse_tree(bytes, "fuzz");
   (void)kerf::sheet::parse_sheet(bytes, "fuzz");

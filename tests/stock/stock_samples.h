@@ -25,6 +25,14 @@ inline std::unique_ptr<ZMap> make_map(const std::string& blank, double cell, int
   return std::move(*map);
 }
 
+/// As moves count it: each cell as high as its middle.
+inline double volume_by_cells(const ZMap& map) {
+  const Box box = map.bounds_mm();
+  double sum_mm = 0;
+  for (const float height : map.heights_mm()) sum_mm += static_cast<double>(height) - box.min.z;
+  return sum_mm * box.size().x * box.size().y / static_cast<double>(map.cell_count());
+}
+
 inline Cutter tool(const char* shape) { return *parse_shape(shape); }
 
 inline CutMove line(const Vec3& from, const Vec3& to) {

@@ -126,7 +126,7 @@ TEST_F(RestCommand, HowToolsAreEngagedChangesNothingElse) {
   // The first way is a slot.
   EXPECT_NEAR(pass["ae_mm"]["most"].get<double>(), 8, 0.1);
   EXPECT_GE(pass["full_slot_mm"].get<double>(), 9);
-  EXPECT_NEAR(pass["removed_mm3"].get<double>(), before["stock"]["removed_mm3"].get<double>(),
+  EXPECT_NEAR(pass["removed_mm3"].get<double>(), before["tools"][0]["removed_mm3"].get<double>(),
               0.01);
   EXPECT_EQ(read_file(folder_.file("map.png")).substr(1, 3), "PNG");
 }
