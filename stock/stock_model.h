@@ -202,6 +202,9 @@ class StockModel {
   virtual std::size_t cell_count() const = 0;
   virtual double blank_mm3() const = 0;  ///< of the blank as the model holds it
   virtual double remaining_mm3() const = 0;
+  /// By how much that is more than what cuts have left of the blank, which they count by cells: by
+  /// what stands between the middles of cells and walls. Moves held back do not count yet.
+  virtual double beside_cells_mm3() const { return 0; }
   virtual std::string digest() const = 0;  ///< hash of the contents, 32 hex digits
 
   /// Closed surface of the workpiece; deviates from the model by at most `tolerance_mm` (0 = every

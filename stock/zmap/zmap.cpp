@@ -46,10 +46,11 @@ struct ZMap::Impl {
   Impl(TileGrid heights, double blank_volume_mm3, ZMapKernel kernel, int threads)
       : sweeper(std::move(heights), kernel, threads), blank_mm3(blank_volume_mm3) {}
   TileGrid& grid() { return sweeper.grid; }
-  double volume_mm3() {
+  double beside_cells_mm3() {
     const WallMarks& walls = sweeper.walls();
-    return volume_of(grid()) + wall_volume_mm3(grid(), walls);
+    return wall_volume_mm3(grid(), walls);
   }
+  double volume_mm3() { return volume_of(grid()) + beside_cells_mm3(); }
 };
 
 ZMap::ZMap(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -168,6 +169,7 @@ std::size_t ZMap::cell_count() const {
 }
 double ZMap::blank_mm3() const { return impl_->blank_mm3; }
 double ZMap::remaining_mm3() const { return impl_->volume_mm3(); }
+double ZMap::beside_cells_mm3() const { return impl_->beside_cells_mm3(); }
 int ZMap::nx() const { return impl_->grid().nx(); }
 int ZMap::ny() const { return impl_->grid().ny(); }
 float ZMap::height_mm(int i, int j) const { return impl_->grid().height(i, j); }

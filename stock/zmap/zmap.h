@@ -76,6 +76,7 @@ class ZMap final : public StockModel,
   double blank_mm3() const override;
   /// About 1 ms for each million cells, and 1 us for each wall between two of them.
   double remaining_mm3() const override;
+  double beside_cells_mm3() const override;
   std::string digest() const override;
   TriangleMesh mesh(double tolerance_mm) const override;
 

@@ -71,9 +71,8 @@ TEST(CutStage, SlotRemovesItsVolumeAndFindsNothing) {
   const ToolUse& use = shop.stage().tools().at(0);
   EXPECT_EQ(use.number, 1);
   EXPECT_EQ(use.shape, "flat:4");
-  // Of a tool by cells, in all by walls: both are where cells end, walls to a fiftieth of a cell.
-  EXPECT_NEAR(use.removed_mm3, 40 * 4 * 2, 0.01);
-  EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 2 * 40 * 2 * 0.1 / 50);
+  EXPECT_NEAR(use.removed_mm3, 40 * 4 * 2, 2 * 40 * 2 * 0.1 / 50);  // a fiftieth of a cell
+  EXPECT_NEAR(use.removed_mm3, shop.removed_mm3(), 1e-6);
   EXPECT_NEAR(use.max_depth_mm, 2, 1e-4);
   EXPECT_NEAR(use.feed_mm, 7 + 50, 1e-9);
   // From X-2 to X40 at 600 mm/min: the sides of a blank are where cells end.

@@ -61,6 +61,7 @@ MillingStage::MillingStage(ProcessSite& site)
   moves_.reserve(kMovesPerCut);
   in_flight_.reserve(2 * kMovesPerCut);
   reports_.reserve(2 * kMovesPerCut);
+  beside_cells_mm3_ = stock_.bare().beside_cells_mm3();
 }
 
 void MillingStage::stop_by(const std::stop_token& stop) {
@@ -69,6 +70,7 @@ void MillingStage::stop_by(const std::stop_token& stop) {
 
 void MillingStage::begin_reporting() {
   complete();
+  beside_cells_mm3_ = stock_.bare().beside_cells_mm3();
   checks_.forget_events();
   lengths_.forget();
   films_.forget();
@@ -93,6 +95,7 @@ void MillingStage::begin_reporting() {
 }
 
 void MillingStage::finish(bool whole) {
+  count_walls();
   if (engagement_) engagement_->finish();
   parts_.finish();
   fixtures_.finish();
@@ -113,11 +116,21 @@ void MillingStage::finish(bool whole) {
   }
 }
 
+/// What a tool has removed in all is what the workpiece has less, walls where they stand: its
+/// moves count by cells.
+void MillingStage::count_walls() {
+  const double beside_mm3 = stock_.bare().beside_cells_mm3();
+  if (mounted_ != nullptr && use_ < uses_.size())
+    uses_[use_].removed_mm3 += beside_cells_mm3_ - beside_mm3;
+  beside_cells_mm3_ = beside_mm3;
+}
+
 void MillingStage::take(const Motion& m, const TimedStep& step, std::span<const PathPiece> path) {
   path_ = path;
   watch_program(m, step);
   if (m.kind == MotionKind::kToolChange || m.tool != spindle_tool_) {
     complete();  // with the cutter that made these moves
+    count_walls();
     engaged_parts_.end_way();
     checks_.end_spindle_event();
     spindle_tool_ = m.tool;

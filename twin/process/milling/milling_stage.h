@@ -108,6 +108,7 @@ class MillingStage final : public Process {
   void check_standing(const Motion& motion, const TimedStep& step, const CheckedMove& move);
   void report_drawn(const Motion& motion, const TimedStep& step);
   void take_traverse(const Motion& motion, const TimedStep& step);
+  void count_walls();
   void take_feed(const Motion& motion, const TimedStep& step);
   void mount_parts(const Motion& motion);
   void mount_shank(const Motion& motion);
@@ -190,6 +191,7 @@ class MillingStage final : public Process {
   std::vector<Deepest> deepest_;           ///< one for each of uses_
   const ResolvedTool* mounted_ = nullptr;  ///< null: to be mounted at the next move
   std::uint32_t use_ = 0;
+  double beside_cells_mm3_ = 0;  ///< StockModel::beside_cells_mm3(), when the tool was mounted
   int spindle_tool_ = 0;
   bool reached_stock_ = false;  ///< a feed move came near the blank, in boxes
   Box feed_bounds_mm_;          ///< of all feed moves, until then
