@@ -92,11 +92,27 @@ class TileArena {
   static std::shared_ptr<float> share(const std::shared_ptr<TileArena>& arena, float* tile) {
     return {tile, [arena](float* unused) { arena->give_back(unused); }};
   }
+  /// Beside the fresh grid's piece, so that all of that can be given back.
+  float* take_apart() const { return allocate(tile_bytes_, 64); }
+  /// What nobody keeps in the fresh grid's piece takes no memory until it is taken again; where it
+  /// is a large page or more at a time, since smaller pages cost time.
+  void drop_free_memory() {
+    const std::lock_guard lock(mutex_);
+    // What is taken next lies where the piece begins.
+    std::sort(free_.begin(), free_.end(), std::greater<>());
+    for (std::size_t first = 0; first < free_.size();) {
+      std::size_t end = first + 1;
+      while (end < free_.size() && at(free_[end], tile_bytes_) == free_[end - 1]) ++end;
+      const std::size_t bytes = (end - first) * tile_bytes_;
+      if (bytes >= kLargePage) madvise(free_[end - 1], bytes, MADV_DONTNEED);
+      first = end;
+    }
+  }
 
  private:
+  static constexpr std::size_t kLargePage = std::size_t{1} << 21;
   /// Large pages save most address translations of the kernel.
   static float* allocate_slab(std::size_t bytes) {
-    constexpr std::size_t kLargePage = std::size_t{1} << 21;
     if (bytes < kLargePage) return allocate(bytes, 64);
     float* const slab = allocate(bytes, kLargePage);
     madvise(slab, bytes, MADV_HUGEPAGE);
@@ -205,6 +221,39 @@ void TileGrid::keep_cut_ids(bool keep) {
     versions_[i] = change_;
   }
   arena_ = arena;
+  share_equal_tiles();
+}
+
+void TileGrid::share_equal_tiles() {
+  /// Of a box: inside, and along two of its sides. Where there are bodies, holes, the floor.
+  constexpr std::size_t kMostKinds = 8;
+  std::vector<std::shared_ptr<float>> kinds;
+  const auto is_like = [&](std::size_t i, const float* cells) {
+    return std::memcmp(tiles_[i].get(), cells, tile_bytes()) == 0;
+  };
+  const auto take = [&](std::size_t i, const std::shared_ptr<float>& kind) {
+    meet_other_grids();
+    tiles_[i] = kind;
+  };
+  const auto width = static_cast<std::size_t>(tiles_x_);
+  for (std::size_t i = 1; i < tiles_.size(); ++i) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                   [&](const auto& known) { return is_like(i, known.get()); });
+    if (kind != kinds.end()) {
+      take(i, *kind);
+      continue;
+    }
+    if (kinds.size() == kMostKinds) continue;
+    for (const std::size_t back : {std::size_t{1}, width}) {
+      if (i < back || !is_like(i, tiles_[i - back].get())) continue;
+      kinds.push_back(TileArena::share(arena_, arena_->take_apart()));
+      std::memcpy(kinds.back().get(), tiles_[i].get(), tile_bytes());
+      take(i, kinds.back());
+      take(i - back, kinds.back());
+      break;
+    }
+  }
+  arena_->drop_free_memory();
 }
 
 void TileGrid::copy_row(int j, float* out) const {

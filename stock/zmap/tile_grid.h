@@ -44,6 +44,9 @@ class TileGrid {
   /// as large. Copies made before stay as they are.
   void keep_cut_ids(bool keep);
   bool keeps_cut_ids() const { return keeps_cut_ids_; }
+  /// Tiles that are equal share one memory from now on, as copies of the grid share theirs: most of
+  /// a fresh blank's are. Finds those of a few kinds that lie side by side somewhere.
+  void share_equal_tiles();
   /// Numbers of a tile's cells, in the order of its heights. Only where they are kept.
   const std::uint32_t* cut_ids(std::size_t tile_index) const {
     return cut_ids_of(tiles_[tile_index].get());
