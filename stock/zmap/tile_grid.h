@@ -13,6 +13,7 @@
 
 namespace kerf {
 
+class PackedTile;
 class TileArena;
 
 /// nx x ny heights, on request with the number of the move that lowered each cell last. Copying the
@@ -86,6 +87,12 @@ class TileGrid {
   /// Memory of the tiles that no other grid shares.
   std::size_t unique_bytes() const;
 
+  /// As StockModel has them, for copies of one grid. No tile of a grid with packed ones may be
+  /// looked at before it has been copied and the copy unpacked.
+  static bool pack(std::span<TileGrid* const> copies, std::size_t at);
+  std::size_t kept_bytes(const TileGrid& before, const TileGrid* after) const;
+  void unpack();
+
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
     const unsigned x = static_cast<unsigned>(i) % kTileCells;
@@ -100,11 +107,16 @@ class TileGrid {
            static_cast<std::size_t>(tx);
   }
   void meet_other_grids() const;
+  /// Has the same memory of a tile as `other`, which has the same version of it.
+  void share_with(const TileGrid& other, std::size_t tile);
+  void set_packed(std::size_t tile, const std::shared_ptr<const PackedTile>& packed);
   Box bounds_;
   int nx_, ny_, tiles_x_, tiles_y_;
   bool keeps_cut_ids_ = false;
   std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid that keep the same
   std::vector<std::shared_ptr<float>> tiles_;
+  /// Of tiles that are null above; empty: there are none.
+  std::vector<std::shared_ptr<const PackedTile>> packed_;
   std::vector<std::uint64_t> versions_;
   std::uint64_t change_ = 0;
   std::shared_ptr<std::atomic<unsigned>> meetings_;  ///< one for all copies of a grid
