@@ -158,6 +158,15 @@ class StockModel {
   /// Memory for heights that nobody but this model or snapshot keeps: what dropping it would free.
   /// A guess while others that share tiles with it are being changed or dropped.
   virtual std::size_t unique_bytes() const = 0;
+  /// Of copies of one model in the order of its cuts, that are only kept: nobody asks anything of
+  /// them any more but this, kept_bytes() and snapshot(), on one thread. Finds memory that
+  /// copies[at] can share with its neighbours, and what is left in memory that no others share is
+  /// packed; snapshot() unpacks it, to the bit. Models that have no way to do so leave it.
+  /// False: others hold some of it still, which may be packed when they have let go of it.
+  virtual bool pack(std::span<StockModel* const> copies, std::size_t at) const;
+  /// Memory that this copy takes beside those before and after it, as far as it is known; after the
+  /// last one (null), what it would if the model had cut on.
+  virtual std::size_t kept_bytes(const StockModel& before, const StockModel* after) const;
 
   /// From now on remembers for each cell the move that lowered it last, for cut_id_at() and
   /// MeshPatch::cut_by: off in a new model; on, all cells count as not cut. A snapshot has what

@@ -135,6 +135,7 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
     fill_mesh(grid, *mesh);
   else
     fill_blank(grid, blank);
+  grid.share_equal_tiles();
   return grid;
 }
 

@@ -243,7 +243,7 @@ double HeightSweeper::radius_mm() const {
 /// the others (most) the middles tell enough: nobody wants but the greatest depth of a tool. Short
 /// moves are left out, which are all near to what is held back, and come by the million.
 bool HeightSweeper::may_be_deepest(const CutMove& move) const {
-  if (!tip_.is_finer_than_cells() || move.arc) return false;
+  if (!tip_.is_finer_than_cells() || move.arc || !traces_.knows()) return false;
   if (!PathBuilder::is_vertical(move)) {
     const double dx = move.to_mm.x - move.from_mm.x, dy = move.to_mm.y - move.from_mm.y;
     if (!tip_.pointed || dx * dx + dy * dy < 4 * radius_mm() * radius_mm()) return false;

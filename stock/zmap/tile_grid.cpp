@@ -13,6 +13,7 @@
 #include <new>
 
 #include "base/mesh_patch.h"
+#include "stock/zmap/packed_tile.h"
 
 namespace kerf {
 namespace {
@@ -66,7 +67,13 @@ class TileArena {
       : tile_bytes_(tile_bytes),
         slab_(allocate_slab(count * tile_bytes)),
         slab_end_(at(slab_, count * tile_bytes)) {}
-  ~TileArena() { std::free(slab_); }
+  ~TileArena() {
+    for (float* const tile : free_) {
+      if (!is_of_slab(tile)) std::free(tile);
+    }
+    for (float* const tile : common_) std::free(tile);
+    std::free(slab_);
+  }
   TileArena(const TileArena&) = delete;
   TileArena& operator=(const TileArena&) = delete;
 
@@ -84,19 +91,51 @@ class TileArena {
     return allocate(tile_bytes_, 64);
   }
   void give_back(float* tile) {
-    if (std::less<>()(tile, slab_) || !std::less<>()(tile, slab_end_)) return std::free(tile);
-    const std::lock_guard lock(mutex_);
-    free_.push_back(tile);
+    if (is_common(tile)) return;
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_of_slab(tile) || free_.size() < kSpareTiles) return free_.push_back(tile);
+    }
+    std::free(tile);
   }
   /// A control block of its own for each tile: it counts the grids that share it.
   static std::shared_ptr<float> share(const std::shared_ptr<TileArena>& arena, float* tile) {
     return {tile, [arena](float* unused) { arena->give_back(unused); }};
   }
+  /// Beside the fresh grid's piece, so that all of that can be given back.
+  float* take_apart() {
+    common_.push_back(allocate(tile_bytes_, 64));
+    return common_.back();
+  }
+  /// Shared by tiles of a fresh grid.
+  bool is_common(const float* tile) const {
+    return std::find(common_.begin(), common_.end(), tile) != common_.end();
+  }
+  /// What nobody keeps in the fresh grid's piece takes no memory until it is taken again; where it
+  /// is a large page or more at a time, since smaller pages cost time.
+  void drop_free_memory() {
+    const std::lock_guard lock(mutex_);
+    // What is taken next lies where the piece begins.
+    std::sort(free_.begin(), free_.end(), std::greater<>());
+    for (std::size_t first = 0; first < free_.size();) {
+      std::size_t end = first + 1;
+      while (end < free_.size() && at(free_[end], tile_bytes_) == free_[end - 1]) ++end;
+      const std::size_t bytes = (end - first) * tile_bytes_;
+      if (bytes >= kLargePage) madvise(free_[end - 1], bytes, MADV_DONTNEED);
+      first = end;
+    }
+  }
 
  private:
+  /// Tiles come and go with every copy that is cut on: so many do not go through the allocator,
+  /// where others would settle between them.
+  static constexpr std::size_t kSpareTiles = 128;
+  bool is_of_slab(const float* tile) const {
+    return !std::less<>()(tile, slab_) && std::less<>()(tile, slab_end_);
+  }
+  static constexpr std::size_t kLargePage = std::size_t{1} << 21;
   /// Large pages save most address translations of the kernel.
   static float* allocate_slab(std::size_t bytes) {
-    constexpr std::size_t kLargePage = std::size_t{1} << 21;
     if (bytes < kLargePage) return allocate(bytes, 64);
     float* const slab = allocate(bytes, kLargePage);
     madvise(slab, bytes, MADV_HUGEPAGE);
@@ -110,6 +149,7 @@ class TileArena {
   float* slab_end_;
   std::mutex mutex_;
   std::vector<float*> free_;
+  std::vector<float*> common_;  ///< never given back before all is
 };
 
 TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny, bool keeps_cut_ids)
@@ -207,11 +247,43 @@ void TileGrid::keep_cut_ids(bool keep) {
     std::copy_n(tiles_[i].get(), kTileFloats, cells);
     if (keep) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
     meet_other_grids();
-    tiles_[i] = TileArena::share(arena, cells);
-    cells_[i] = cells;
+    set_tile(i, TileArena::share(arena, cells));
     versions_[i] = change_;
   }
   arena_ = arena;
+  share_equal_tiles();
+}
+
+void TileGrid::share_equal_tiles() {
+  /// Of a box: inside, and along two of its sides. Where there are bodies, holes, the floor.
+  constexpr std::size_t kMostKinds = 8;
+  std::vector<std::shared_ptr<float>> kinds;
+  const auto is_like = [&](std::size_t i, const float* cells) {
+    return std::memcmp(tiles_[i].get(), cells, tile_bytes()) == 0;
+  };
+  const auto take = [&](std::size_t i, const std::shared_ptr<float>& kind) {
+    meet_other_grids();
+    set_tile(i, kind);
+  };
+  const auto width = static_cast<std::size_t>(tiles_x_);
+  for (std::size_t i = 1; i < tiles_.size(); ++i) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                   [&](const auto& known) { return is_like(i, known.get()); });
+    if (kind != kinds.end()) {
+      take(i, *kind);
+      continue;
+    }
+    if (kinds.size() == kMostKinds) continue;
+    for (const std::size_t back : {std::size_t{1}, width}) {
+      if (i < back || !is_like(i, tiles_[i - back].get())) continue;
+      kinds.push_back(TileArena::share(arena_, arena_->take_apart()));
+      std::memcpy(kinds.back().get(), tiles_[i].get(), tile_bytes());
+      take(i, kinds.back());
+      take(i - back, kinds.back());
+      break;
+    }
+  }
+  arena_->drop_free_memory();
 }
 
 void TileGrid::copy_row(int j, float* out) const {
@@ -244,9 +316,75 @@ float* TileGrid::make_writable(std::size_t tile_index) {
   std::shared_ptr<float> own = TileArena::share(arena_, arena_->take());
   std::memcpy(own.get(), tile.get(), tile_bytes());
   meet_other_grids();
-  tile = std::move(own);
-  cells_[tile_index] = tile.get();
+  set_tile(tile_index, std::move(own));
   return tile.get();
+}
+
+void TileGrid::set_packed(std::size_t tile, const std::shared_ptr<const PackedTile>& packed) {
+  packed_.resize(tiles_.size());
+  packed_[tile] = packed;
+  meet_other_grids();
+  set_tile(tile, nullptr);
+}
+
+void TileGrid::share_with(const TileGrid& other, std::size_t tile) {
+  if (!other.tiles_[tile]) {
+    if (tiles_[tile]) set_packed(tile, other.packed_[tile]);
+  } else if (tiles_[tile] && tiles_[tile] != other.tiles_[tile]) {
+    meet_other_grids();
+    set_tile(tile, other.tiles_[tile]);
+  }
+}
+
+bool TileGrid::pack(std::span<TileGrid* const> copies, std::size_t at) {
+  TileGrid& grid = *copies[at];
+  const TileGrid* const after = at + 1 < copies.size() ? copies[at + 1] : nullptr;
+  bool is_all = after != nullptr;
+  for (std::size_t i = 0; i < grid.tiles_.size(); ++i) {
+    const std::uint64_t version = grid.versions_[i];
+    const auto is_alike = [&](std::size_t n) {
+      return copies[n]->versions_[i] == version && copies[n]->keeps_cut_ids_ == grid.keeps_cut_ids_;
+    };
+    if (at > 0 && is_alike(at - 1)) grid.share_with(*copies[at - 1], i);
+    if (at + 1 < copies.size() && is_alike(at + 1)) grid.share_with(*copies[at + 1], i);
+    const std::shared_ptr<float>& tile = grid.tiles_[i];
+    if (!tile || grid.arena_->is_common(tile.get())) continue;
+    const auto is_shared = [&](std::size_t n) { return copies[n]->tiles_[i] == tile; };
+    std::size_t first = at, end = at + 1;
+    while (first > 0 && is_shared(first - 1)) --first;
+    while (end < copies.size() && is_shared(end)) ++end;
+    if (tile.use_count() != static_cast<std::ptrdiff_t>(end - first)) {
+      is_all = is_all && after->versions_[i] == version;
+      continue;
+    }
+    grid.meet_other_grids();
+    const auto packed = std::make_shared<const PackedTile>(tile.get(), grid.keeps_cut_ids_);
+    for (std::size_t n = first; n < end; ++n) copies[n]->set_packed(i, packed);
+  }
+  return is_all;
+}
+
+std::size_t TileGrid::kept_bytes(const TileGrid& before, const TileGrid* after) const {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const TileGrid& other = after != nullptr ? *after : before;
+    if (versions_[i] == other.versions_[i]) continue;
+    if (!tiles_[i]) {
+      bytes += packed_[i]->bytes();
+    } else if (!arena_->is_common(tiles_[i].get())) {
+      bytes += tile_bytes();
+    }
+  }
+  return bytes;
+}
+
+void TileGrid::unpack() {
+  for (std::size_t i = 0; i < packed_.size(); ++i) {
+    if (tiles_[i]) continue;
+    set_tile(i, TileArena::share(arena_, arena_->take()));
+    packed_[i]->unpack(tiles_[i].get());
+  }
+  packed_.clear();
 }
 
 std::size_t TileGrid::unique_bytes() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/geometry.h"
@@ -13,6 +14,7 @@
 
 namespace kerf {
 
+class PackedTile;
 class TileArena;
 
 /// nx x ny heights, on request with the number of the move that lowered each cell last. Copying the
@@ -46,6 +48,9 @@ class TileGrid {
   /// as large. Copies made before stay as they are.
   void keep_cut_ids(bool keep);
   bool keeps_cut_ids() const { return keeps_cut_ids_; }
+  /// Tiles that are equal share one memory from now on, as copies of the grid share theirs: most of
+  /// a fresh blank's are. Finds those of a few kinds that lie side by side somewhere.
+  void share_equal_tiles();
   /// Numbers of a tile's cells, in the order of its heights. Only where they are kept.
   const std::uint32_t* cut_ids(std::size_t tile_index) const {
     return cut_ids_of(cells_[tile_index]);
@@ -85,6 +90,12 @@ class TileGrid {
   /// Memory of the tiles that no other grid shares.
   std::size_t unique_bytes() const;
 
+  /// As StockModel has them, for copies of one grid. No tile of a grid with packed ones may be
+  /// looked at before it has been copied and the copy unpacked.
+  static bool pack(std::span<TileGrid* const> copies, std::size_t at);
+  std::size_t kept_bytes(const TileGrid& before, const TileGrid* after) const;
+  void unpack();
+
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
     const unsigned x = static_cast<unsigned>(i) % kTileCells;
@@ -99,12 +110,21 @@ class TileGrid {
            static_cast<std::size_t>(tx);
   }
   void meet_other_grids() const;
+  void set_tile(std::size_t tile_index, std::shared_ptr<float> tile) {
+    cells_[tile_index] = tile.get();
+    tiles_[tile_index] = std::move(tile);
+  }
+  /// Has the same memory of a tile as `other`, which has the same version of it.
+  void share_with(const TileGrid& other, std::size_t tile);
+  void set_packed(std::size_t tile, const std::shared_ptr<const PackedTile>& packed);
   Box bounds_;
   int nx_, ny_, tiles_x_, tiles_y_;
   bool keeps_cut_ids_ = false;
   std::shared_ptr<TileArena> arena_;  ///< one for all copies of a grid that keep the same
   std::vector<std::shared_ptr<float>> tiles_;
-  std::vector<const float*> cells_;  ///< where they are
+  std::vector<const float*> cells_;  ///< where they are: set_tile()
+  /// Of tiles that are null above; empty: there are none.
+  std::vector<std::shared_ptr<const PackedTile>> packed_;
   std::vector<std::uint64_t> versions_;
   std::uint64_t change_ = 0;
   std::shared_ptr<std::atomic<unsigned>> meetings_;  ///< one for all copies of a grid

@@ -124,6 +124,7 @@ double TipTraces::depth_mm(const TileGrid& grid, const Tip& tip, const CutMove& 
 }
 
 void TipTraces::add(const Tip& tip, const CutMove& move) {
+  if (!knows()) return;
   slack_mm_ = std::max(slack_mm_, tip.rise_mm);
   const bool leaves = leaves_grid(move);
   const double beyond_mm = move.arc ? 2 * glm::length(move.from_mm - move.arc->center_mm) +

@@ -70,7 +70,13 @@ class TipTraces {
   /// The move is cut. Arcs are taken as chords.
   void add(const Tip& tip, const CutMove& move);
   /// Nothing is known of what was cut before, as of a workpiece that was loaded: no bound holds.
-  void forget() { slack_mm_ = std::numeric_limits<double>::infinity(); }
+  /// What comes is not remembered then, either.
+  void forget() {
+    slack_mm_ = std::numeric_limits<double>::infinity();
+    tiles_.assign(tiles_.size(), nullptr);
+    own_.assign(own_.size(), 0);
+    any_ = false;
+  }
   bool knows() const { return slack_mm_ < std::numeric_limits<double>::infinity(); }
 
   /// Material reaches up to here at least over all of cell (i, j) and up to `margin_mm` around it,

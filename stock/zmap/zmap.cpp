@@ -117,6 +117,7 @@ std::optional<PartGap> ZMap::part_gap(const Cutter& cutter, const CarriedPart& p
 std::unique_ptr<StockModel> ZMap::snapshot() const {
   impl_->sweeper.walls();  // once for both
   auto copy = std::make_unique<Impl>(*impl_);
+  copy->grid().unpack();
   copy->sweeper.pool = std::make_shared<WorkerPool>(1);
   copy->seen.clear();
   std::vector<CutReport> ignored;
@@ -157,6 +158,28 @@ std::optional<std::uint32_t> ZMap::cut_id_at(const Vec3& point_mm) const {
 
 std::size_t ZMap::unique_bytes() const {
   return impl_->grid().unique_bytes() + impl_->sweeper.walls().unique_bytes();
+}
+
+bool ZMap::pack(std::span<StockModel* const> copies, std::size_t at) const {
+  std::vector<TileGrid*> grids;
+  grids.reserve(copies.size());
+  for (StockModel* const copy : copies) {
+    ZMap* const map = dynamic_cast<ZMap*>(copy);
+    if (map == nullptr) return true;
+    grids.push_back(&map->impl_->grid());
+  }
+  dynamic_cast<ZMap&>(*copies[at]).impl_->sweeper.forget_traces();
+  return TileGrid::pack(grids, at);
+}
+
+std::size_t ZMap::kept_bytes(const StockModel& before, const StockModel* after) const {
+  const auto grid_of = [](const StockModel* model) {
+    const ZMap* const map = dynamic_cast<const ZMap*>(model);
+    return map ? &map->impl_->grid() : nullptr;
+  };
+  const TileGrid* const earlier = grid_of(&before);
+  return earlier ? impl_->grid().kept_bytes(*earlier, grid_of(after))
+                 : StockModel::kept_bytes(before, after);
 }
 
 Box ZMap::bounds_mm() const { return impl_->grid().bounds_mm(); }

@@ -66,6 +66,10 @@ class ZMap final : public StockModel,
                                   const CutMove& move, double below_mm) const override;
   std::unique_ptr<StockModel> snapshot() const override;
   std::size_t unique_bytes() const override;
+  /// A copy of one that was packed has heights, numbers and walls to the bit, but judges contacts
+  /// and reports depths as a workpiece that was loaded does: the ways of tips are dropped.
+  bool pack(std::span<StockModel* const> copies, std::size_t at) const override;
+  std::size_t kept_bytes(const StockModel& before, const StockModel* after) const override;
   void keep_cut_ids(bool keep) override;
   bool keeps_cut_ids() const override;
   std::optional<std::uint32_t> cut_id_at(const Vec3& point_mm) const override;

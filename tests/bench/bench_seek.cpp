@@ -3,6 +3,8 @@
 //   bench_seek [--program FILE --stock SPEC --tool N=SHAPE] [--cell MM] [--seeks N] [--seed N]
 //   bench_seek --nest MOVES [--seeks N] [--seed N]
 //   bench_seek --workload NAME [--seeks N] [--seed N]
+// and --keyframes MB: memory for the keyframes, as kerf view takes it. The numbers of moves are
+// kept, as in the window.
 //
 // Without a program: w2_finish_1m (workloads.h). --nest: a torch program of so many cuts, discs
 // with two holes each in a lattice (lead-in and full circle), from a sheet of 2000 mm x 1000 mm.
@@ -57,6 +59,7 @@ struct Arguments {
   std::string workload = "w2_finish_1m";
   bool turns = false;  ///< of the workload
   int seeks = 200;
+  double keyframes_mb = 0;  ///< 0: as the player has it
   unsigned seed = 1;
 };
 
@@ -153,6 +156,7 @@ class Source {
     SessionOptions options;
     options.program.path = arguments_.program;
     options.stock.cell_mm = arguments_.cell_mm;
+    options.stock.keeps_cut_ids = !turns() && arguments_.nest_moves == 0;
     if (turns()) options.stock.kind = StockKind::kTurning;
     if (!arguments_.stock.empty()) {
       const Result<Blank> blank = parse_blank(arguments_.stock);
@@ -306,7 +310,11 @@ int run(const Arguments& arguments) {
   const std::vector<TorchMaterial> materials = loaded->player.materials;
   const std::shared_ptr<const ProgramTrack> track = loaded->player.track;
   const double loaded_mb = rss_mb();
-  Player player(std::move(loaded->player), {});
+  PlayerOptions player_options;
+  if (arguments.keyframes_mb > 0) {
+    player_options.keyframe_bytes = static_cast<std::size_t>(arguments.keyframes_mb * 1048576.0);
+  }
+  Player player(std::move(loaded->player), player_options);
   cut_to_the_end(player);
   fmt::print(
       "memory: track {:.1f} MB by itself; process {:.0f} MB before, {:.0f} MB loaded, {:.0f} "
@@ -359,6 +367,8 @@ Arguments understand(int argc, char** argv) {
       arguments.workload = value;
     } else if (name == "--nest") {
       arguments.nest_moves = std::max(1, std::atoi(value));
+    } else if (name == "--keyframes") {
+      arguments.keyframes_mb = std::atof(value);
     } else if (name == "--seeks") {
       arguments.seeks = std::max(1, std::atoi(value));
     } else if (name == "--seed") {

@@ -235,6 +235,10 @@ TEST(ZMapSnapshot, CostsOnlyWhatChangesAndGivesItBack) {
   const std::size_t tile_bytes = kTileFloats * sizeof(float);
   const auto map = make_map("box:0,0,-10:40,40,0", 0.1);
   const auto cutter = parse_shape("flat:2");
+  // Of the 49 tiles all but that in the corner, which is as small as no other, have an equal.
+  EXPECT_EQ(map->unique_bytes(), tile_bytes);
+  cut(*map, *parse_shape("flat:100"), {line(Vec3(-60, 20, -0.5), Vec3(100, 20, -0.5))});
+  finish(*map);
   EXPECT_EQ(map->unique_bytes(), map->tile_count() * tile_bytes);
   auto frame = map->snapshot();
   EXPECT_EQ(frame->unique_bytes(), 0u);
@@ -254,6 +258,38 @@ TEST(ZMapSnapshot, CostsOnlyWhatChangesAndGivesItBack) {
   expect_tiles(1);  // once a snapshot
   frame.reset();
   expect_tiles(map->tile_count());
+}
+
+TEST(ZMapSnapshot, EqualTilesOfABlankAreCutEachByItself) {
+  // Neighbours that share a tile, cut by several threads at once, against a blank of which no two
+  // tiles are alike.
+  const auto cutter = parse_shape("ball:3");
+  const Box reach{Vec3(-3, -3, -9), Vec3(43, 43, -1)};
+  for (const int threads : {1, 3}) {
+    const auto map = make_map("box:0,0,-10:40,40,0", 0.1, threads);
+    const auto uneven = make_map("box:0,0,-10:40,40,0", 0.1, threads);
+    std::vector<CutMove> notches;
+    for (std::uint32_t tile = 0; tile < uneven->tile_count(); ++tile) {
+      const Box box = uneven->tile_box(tile);
+      Vec3 at = 0.5 * (box.min + box.max);
+      at.z = -0.001 * tile;
+      notches.push_back(line(at, at));
+    }
+    cut(*uneven, *cutter, notches);
+    finish(*uneven);
+    const auto blank = map->snapshot();
+    const std::string digest = blank->digest();
+    std::mt19937 random(23);
+    const auto path = random_path(random, reach, 60);
+    cut(*map, *cutter, path);
+    cut(*map, *cutter, notches);
+    cut(*uneven, *cutter, path);
+    finish(*map);
+    finish(*uneven);
+    EXPECT_EQ(map->digest(), uneven->digest()) << threads;
+    EXPECT_EQ(blank->digest(), digest);
+    EXPECT_NE(map->digest(), digest);
+  }
 }
 
 /// For ThreadSanitizer as much as for its own checks: the origin cuts on while another thread

@@ -14,14 +14,6 @@ constexpr double kLeastShare = 0.25;
 /// not last.
 constexpr double kEndShare = 0.125;
 
-/// Memory of the tiles that `stock` does not share with the keyframe before it.
-std::size_t bytes_beside(const StockModel& stock, const StockModel& before) {
-  const std::size_t tiles = stock.tile_count();
-  const std::size_t tile_bytes =
-      (stock.cell_count() + tiles - 1) / tiles * sizeof(float) * (stock.keeps_cut_ids() ? 2 : 1);
-  return stock.differing_tiles(before).size() * tile_bytes;
-}
-
 }  // namespace
 
 std::size_t KeyframeStore::upper_bound(std::size_t motion) const {
@@ -56,17 +48,36 @@ bool KeyframeStore::wants(std::size_t motion, double cost_s) const {
   return gap > 0.5 * worst_s();
 }
 
-void KeyframeStore::add(std::size_t motion, double cost_s,
-                        std::unique_ptr<const StockModel> stock) {
+void KeyframeStore::add(std::size_t motion, double cost_s, std::unique_ptr<StockModel> stock) {
   const std::size_t next = upper_bound(motion);
-  Keyframe frame{motion, cost_s, std::move(stock), 0};
-  if (next > 0) {
-    assert(frames_[next - 1].motion != motion);
-    frame.bytes = bytes_beside(*frame.stock, *frames_[next - 1].stock);
+  assert(next == 0 || frames_[next - 1].motion != motion);
+  frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(next),
+                 Keyframe{motion, cost_s, std::move(stock), 0});
+  if (next > 0) frames_[next - 1].is_packed = false;
+  // Some could not be when they came: others have let go of what they shared with them since.
+  for (std::size_t n = 0; n < frames_.size(); ++n) {
+    if (!frames_[n].is_packed) pack(n);
   }
-  bytes_ += frame.bytes;
-  frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(next), std::move(frame));
   thin();
+}
+
+void KeyframeStore::pack(std::size_t frame) {
+  std::vector<StockModel*> copies;
+  copies.reserve(frames_.size());
+  for (const Keyframe& one : frames_) copies.push_back(one.stock.get());
+  frames_[frame].is_packed = copies[frame]->pack(copies, frame);
+  for (std::size_t n = frame > 0 ? frame - 1 : 0; n < frame + 2; ++n) measure(n);
+}
+
+/// The first one is there anyway.
+void KeyframeStore::measure(std::size_t frame) {
+  if (frame == 0 || frame >= frames_.size()) return;
+  Keyframe& one = frames_[frame];
+  const StockModel* const after =
+      frame + 1 < frames_.size() ? frames_[frame + 1].stock.get() : nullptr;
+  bytes_ -= one.bytes;
+  one.bytes = one.stock->kept_bytes(*frames_[frame - 1].stock, after);
+  bytes_ += one.bytes;
 }
 
 /// The gap that is left by the one that goes must be the smallest. The last one stays as long as
@@ -84,13 +95,9 @@ void KeyframeStore::thin() {
     }
     bytes_ -= frames_[least].bytes;
     frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(least));
-    if (least == frames_.size()) continue;
-    // What its follower shared with it alone is now the follower's own.
-    Keyframe& follower = frames_[least];
-    const std::size_t own =
-        std::max(follower.bytes, bytes_beside(*follower.stock, *frames_[least - 1].stock));
-    bytes_ += own - follower.bytes;
-    follower.bytes = own;
+    // What its neighbours shared with it alone is their own now.
+    measure(least - 1);
+    measure(least);
   }
 }
 

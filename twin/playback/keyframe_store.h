@@ -14,11 +14,13 @@ namespace kerf {
 struct Keyframe {
   std::size_t motion = 0;
   double cost_s = 0;  ///< seconds of cutting from the start of the program to here, as measured
-  std::unique_ptr<const StockModel> stock;
-  std::size_t bytes = 0;  ///< that it keeps for itself alone
+  std::unique_ptr<StockModel> stock;  ///< packed: only snapshot() of it may be looked at
+  std::size_t bytes = 0;              ///< that it keeps for itself alone
+  bool is_packed = false;             ///< all that can be
 };
 
-/// Keeps keyframes in order of their motions. The first one (the blank) stays for ever and does not
+/// Keeps keyframes in order of their motions, packed (StockModel::pack): w2_finish_1m's take a
+/// third of what they took. The first one (the blank) stays for ever and does not
 /// count. When the others exceed the budget, the one goes whose absence lengthens the worst seek
 /// least: a seek costs at most the cutting between two neighbours. One thread.
 class KeyframeStore {
@@ -31,7 +33,7 @@ class KeyframeStore {
   /// last one. Between two: when it divides a gap that is among the worst.
   bool wants(std::size_t motion, double cost_s) const;
   /// `motion` is not in the store yet.
-  void add(std::size_t motion, double cost_s, std::unique_ptr<const StockModel> stock);
+  void add(std::size_t motion, double cost_s, std::unique_ptr<StockModel> stock);
 
   /// The last one at or before the motion; null: none.
   const Keyframe* at_or_before(std::size_t motion) const;
@@ -44,6 +46,8 @@ class KeyframeStore {
 
  private:
   std::size_t upper_bound(std::size_t motion) const;
+  void pack(std::size_t frame);
+  void measure(std::size_t frame);
   void thin();
 
   std::size_t budget_bytes_;

@@ -27,7 +27,11 @@ void StockCursor::jump_near(std::size_t goal) {
   const Keyframe* frame = store_.at_or_before(goal);
   assert(frame);
   if (motion_ <= goal && frame->motion <= motion_) return;
-  stock_ = frame->stock->snapshot();
+  if (!near_ || near_motion_ != frame->motion) {
+    near_ = frame->stock->snapshot();
+    near_motion_ = frame->motion;
+  }
+  stock_ = near_->snapshot();
   motion_ = offered_ = frame->motion;
 }
 

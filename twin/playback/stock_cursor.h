@@ -44,6 +44,9 @@ class StockCursor {
   const CutRecord& record_;
   KeyframeStore& store_;
   std::unique_ptr<StockModel> stock_;
+  /// The keyframe that was gone to last, so that going back to it again and again is quick.
+  std::unique_ptr<StockModel> near_;
+  std::size_t near_motion_ = 0;
   std::size_t motion_ = 0;
   std::size_t goal_ = 0;
   std::size_t offered_ = 0;  ///< where a keyframe was last thought of

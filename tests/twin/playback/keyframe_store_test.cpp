@@ -58,6 +58,30 @@ TEST(KeyframeStore, CountsOnlyWhatNeighboursDoNotShare) {
   EXPECT_LT(store.bytes(), sample.whole_bytes() / 2) << "one slot touches a row of tiles";
 }
 
+TEST(KeyframeStore, WhatIsNotTheLastIsPackedAndComesBackAsItWas) {
+  Sample sample;
+  KeyframeStore store(std::size_t{1} << 30, 0.001);
+  store.add(0, 0, sample.same());
+  std::vector<std::string> digests;
+  std::size_t raw_bytes = 0;
+  const std::size_t tile_bytes = sample.whole_bytes() / sample.same()->tile_count();
+  auto before = sample.same();
+  for (std::size_t i = 1; i <= 60; ++i) {
+    auto stock = sample.next();
+    raw_bytes += stock->differing_tiles(*before).size() * tile_bytes;
+    digests.push_back(stock->digest());
+    before = stock->snapshot();
+    store.add(i, 0.01 * static_cast<double>(i), std::move(stock));
+  }
+  before.reset();
+  // The last one is not, and the floors of slots are flat.
+  EXPECT_LT(store.bytes(), raw_bytes / 3);
+  EXPECT_GT(store.bytes(), 0U);
+  for (std::size_t i = 60; i >= 1; --i) {
+    EXPECT_EQ(store.at_or_before(i)->stock->snapshot()->digest(), digests[i - 1]) << i;
+  }
+}
+
 TEST(KeyframeStore, StaysWithinItsBudgetAndSpreadsEvenly) {
   Sample sample;
   KeyframeStore store(6 * sample.whole_bytes(), 0.001);

@@ -74,6 +74,42 @@ TEST(StockCursor, TheOrderOfSeeksDoesNotMatter) {
   }
 }
 
+/// Keyframes are packed: what comes out of them has the numbers of moves as well, whatever there
+/// are of them and wherever the cursor comes from.
+TEST(StockCursor, WhichMoveCutACellDoesNotDependOnKeyframes) {
+  const std::vector<Motion> motions = test::varied_program(51, 1500);
+  const auto track = test::track_of(motions);
+  std::mt19937 random(52);
+  const std::vector<std::size_t> places = test::random_places(random, motions.size(), 25);
+  std::vector<std::vector<std::uint32_t>> expected;
+  for (const std::size_t budget_bytes : {std::size_t{0}, std::size_t{3'000'000}, kPlenty}) {
+    auto blank = test::block_40();
+    blank->keep_cut_ids(true);
+    KeyframeStore store(budget_bytes, 1e-5);
+    Frontier frontier(*track, std::move(blank), test::two_tools(), {}, store);
+    while (!frontier.complete()) frontier.advance(track->size());
+    EXPECT_EQ(store.count() == 1, budget_bytes == 0);
+    EXPECT_LE(store.bytes(), budget_bytes);
+    StockCursor cursor(*track, frontier.moves(), frontier.record(), store);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      while (!cursor.approach(places[n])) {
+      }
+      const auto seen = cursor.picture(0);
+      const auto& map = dynamic_cast<const ZMap&>(*seen);
+      std::vector<std::uint32_t> ids;
+      for (int j = 0; j < map.ny(); ++j) {
+        for (int i = 0; i < map.nx(); ++i) ids.push_back(map.present_cut_id(i, j));
+      }
+      if (budget_bytes == 0) {
+        expected.push_back(std::move(ids));
+      } else {
+        ASSERT_EQ(ids, expected[n]) << "motion " << places[n] << ", " << store.count();
+      }
+      EXPECT_LE(store.bytes(), budget_bytes);
+    }
+  }
+}
+
 TEST(StockCursor, SmoothRunsWithoutEndGetASeamAndStayExact) {
   std::vector<Motion> motions;
   MotionList program;
