@@ -72,7 +72,7 @@ static void lay_ray(const FrontGrid& grid, const RayLine& line, const FrontEnd& 
     const std::int32_t x = at.i[n] & (kSide - 1), y = at.j[n] & (kSide - 1);
     const std::int32_t in_x = x & (kX - 1), in_y = y & (kY - 1);
     const std::int32_t offset = (x - in_x) * kY + in_x + (y - in_y) * (kBlocks / kY) + in_y * kX;
-    at.offset[n] = (x == kSide - 1) | (y == kSide - 1) ? -1 : offset;
+    at.offset[n] = ((x == kSide - 1) | (y == kSide - 1)) ? -1 : offset;
     at.next_x[n] = in_x == kX - 1 ? kBlock - (kX - 1) : 1;
     at.next_y[n] = in_y == kY - 1 ? kBlocks - (kY - 1) * kX : kX;
   }
