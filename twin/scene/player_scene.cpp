@@ -15,7 +15,9 @@
 namespace kerf {
 namespace {
 
+/// What is removed is summed so often, or when so many times as long has passed as that took.
 constexpr std::chrono::milliseconds kRemovedPeriod{500};
+constexpr int kRemovedShare = 50;
 
 PlayState play_state(const PlayerState& state, std::size_t motions) {
   switch (state.mode) {
@@ -319,18 +321,19 @@ SceneUpdate PlayerScene::update(const std::shared_ptr<const PlayerState>& state,
   return update;
 }
 
-/// Summing over all cells takes milliseconds: not for every frame of one that plays, nor for every
-/// one of many steps.
+/// Summing over all cells takes milliseconds, over long walls tens of them: not for every frame of
+/// one that plays, nor for every one of many steps.
 bool PlayerScene::is_removed_due(const PlayerState& state) const {
-  return state.stock && state.stock_number != removed_stock_ &&
-         Clock::now() - removed_at_ > kRemovedPeriod;
+  return state.stock && state.stock_number != removed_stock_ && Clock::now() > removed_due_;
 }
 
 double PlayerScene::removed_mm3(const PlayerState& state) {
   if (is_removed_due(state)) {
+    const Clock::time_point begin = Clock::now();
     removed_mm3_ = state.stock->blank_mm3() - state.stock->remaining_mm3();
     removed_stock_ = state.stock_number;
-    removed_at_ = Clock::now();
+    const Clock::time_point end = Clock::now();
+    removed_due_ = end + std::max<Clock::duration>(kRemovedPeriod, kRemovedShare * (end - begin));
   }
   return removed_mm3_;
 }

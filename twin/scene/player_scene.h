@@ -147,7 +147,7 @@ class PlayerScene {
   std::shared_ptr<const LoadRecord> loads_;  ///< null: none
   ColorCommand colors_;                      ///< asked for last
   Clock::time_point colored_at_{};
-  Clock::time_point removed_at_{};
+  Clock::time_point removed_due_{};
   /// Kept, so that a new one cannot have the address of one that was shown.
   std::shared_ptr<const std::vector<Finding>> shown_findings_;
 };
