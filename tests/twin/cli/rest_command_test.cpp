@@ -126,8 +126,9 @@ TEST_F(RestCommand, HowToolsAreEngagedChangesNothingElse) {
   // The first way is a slot.
   EXPECT_NEAR(pass["ae_mm"]["most"].get<double>(), 8, 0.1);
   EXPECT_GE(pass["full_slot_mm"].get<double>(), 9);
+  // Of a pass by cells, of a tool by walls.
   EXPECT_NEAR(pass["removed_mm3"].get<double>(), before["tools"][0]["removed_mm3"].get<double>(),
-              0.01);
+              0.05);
   EXPECT_EQ(read_file(folder_.file("map.png")).substr(1, 3), "PNG");
 }
 
