@@ -19,10 +19,10 @@ struct Keyframe {
   bool is_packed = false;             ///< all that can be
 };
 
-/// Keeps keyframes in order of their motions, packed (StockModel::pack): w2_finish_1m's take a
-/// third of what they took. The first one (the blank) stays for ever and does not
-/// count. When the others exceed the budget, the one goes whose absence lengthens the worst seek
-/// least: a seek costs at most the cutting between two neighbours. One thread.
+/// Keeps keyframes in order of their motions, packed where the model can (StockModel::pack; a
+/// Z-map: to a third). The first one (the blank) stays for ever and does not count. When the others
+/// exceed the budget, the one goes whose absence lengthens the worst seek least: a seek costs at
+/// most the cutting between two neighbours. One thread.
 class KeyframeStore {
  public:
   /// `finest_s`: closer than this (seconds of cutting) no keyframe is wanted.

@@ -47,7 +47,7 @@ class PastWays {
   }
   bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
-  /// more than `margin_mm`. 10 ns; of a slope that is not of a flat tool 200.
+  /// more than `margin_mm`. 10 ns; of a slope that is of neither a flat tool nor a ball 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
   /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
   /// slope that is of neither a flat tool nor a ball 200. As if the tool were wider by `margin_mm`.
