@@ -129,6 +129,25 @@ class HeightGrid {
             std::max(floor, upper[right][offset_of_row(y + 1) + offset_in_row(x + 1)])};
   }
 
+  /// As they are kept, of the cell, which the grid contains, and of those about it, row by row from
+  /// (i - 1, j - 1); past the grid's end its last one again.
+  std::array<float, 9> kept_about(int i, int j) const {
+    std::size_t tile_of[3], at[3];
+    for (int n = 0; n < 3; ++n) {
+      const auto x = static_cast<unsigned>(std::clamp(i + n - 1, 0, nx_ - 1));
+      tile_of[n] = x / kTileCells, at[n] = offset_in_row(x);
+    }
+    std::array<float, 9> kept;
+    for (int n = 0; n < 3; ++n) {
+      const auto y = static_cast<unsigned>(std::clamp(j + n - 1, 0, ny_ - 1));
+      const float* const* const row = tiles_ + y / kTileCells * static_cast<std::size_t>(tiles_x_);
+      const std::size_t first = offset_of_row(y);
+      for (int m = 0; m < 3; ++m)
+        kept[static_cast<std::size_t>(3 * n + m)] = row[tile_of[m]][first + at[m]];
+    }
+    return kept;
+  }
+
   /// Position of cell (i, j) within its tile.
   static std::size_t offset(int i, int j) {
     return offset_of_row(static_cast<unsigned>(j)) + offset_in_row(static_cast<unsigned>(i));

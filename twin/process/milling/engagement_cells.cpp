@@ -12,17 +12,8 @@ namespace {
 
 /// Of more cells across its radius not all are asked, but so many as if each were larger.
 constexpr double kManyCells = 31;
-/// From where a cell is at it, a direction may be seen from so many sides of it.
-constexpr int kMostSpread = 12;
-/// The middles of so many equal parts of a width of 1.
-constexpr auto kPartsOfSpread = [] {
-  std::array<std::array<double, kMostSpread>, kMostSpread + 1> middles{};
-  for (std::size_t parts = 1; parts < middles.size(); ++parts) {
-    for (std::size_t part = 0; part < parts; ++part)
-      middles[parts][part] = (static_cast<double>(part) + 0.5) / static_cast<double>(parts) - 0.5;
-  }
-  return middles;
-}();
+/// A tip that rises more steeply than this, so near to its middle, is a point.
+constexpr double kNearTip_cells = 2, kPointed = 0.2;
 /// Looking for where material ends, so many cells beyond the last in it.
 constexpr double kBeyond_cells = 1.5;
 /// So near to the rim, at least, is the cell before it.
@@ -32,8 +23,16 @@ constexpr int kDeepSteps = 4;
 
 }  // namespace
 
-/// What is not flat, and that finely.
-bool EngagementScan::is_fine() const { return !is_flat() && radius_ >= kFineCells * cell_; }
+bool EngagementScan::is_pointed(const Cutter& cutter, double cell_mm) {
+  const double near_tip = std::min(kNearTip_cells * cell_mm, cutter.radius_mm());
+  return cutter.height_mm(near_tip) > kPointed * near_tip;
+}
+
+bool EngagementScan::asks_cells(const Cutter& cutter, double cell_mm) {
+  const double radius = cutter.radius_mm();
+  const bool is_flat = cutter.height_mm(radius * (1 - 1e-9)) <= 0;
+  return !is_flat && radius >= kFineCells * cell_mm && !is_pointed(cutter, cell_mm);
+}
 
 /// Of cells of that size, by their distance from the cutter's middle.
 void EngagementScan::weigh_cells(double cell_mm) {
@@ -58,18 +57,9 @@ void EngagementScan::weigh_cells(double cell_mm) {
 /// A cell with material over the cutter's surface. Its share of the height is what the profile
 /// rises over its width, times what of its circle it covers.
 void EngagementScan::take_cell(const CellBatch& cells, int n, CellFront& front) {
-  const double step = cells.step[n], share = cells.share[n], spread = cells.spread[n];
-  if (spread <= 1) {
-    front.add(step, share);
-  } else {
-    // Near the middle a cell is seen in many directions.
-    const int parts = std::min(static_cast<int>(spread) + 1, kMostSpread);
-    const double* const places = kPartsOfSpread[static_cast<std::size_t>(parts)].data();
-    const double each = share / parts;
-    for (int part = 0; part < parts; ++part) front.add(step + spread * places[part], each);
-  }
+  front.add(cells.first_end, n), front.add(cells.last_end, n);
   if (cells.ahead[n] < 0) return;
-  CellFront::Extent& extent = front.extent[static_cast<std::size_t>(step + 0.5)];
+  CellFront::Extent& extent = front.extent[static_cast<std::size_t>(cells.step[n] + 0.5)];
   extent.inner_mm = std::min(extent.inner_mm, cells.radius[n]);
   extent.outer_mm = std::max(extent.outer_mm, cells.radius[n]);
   extent.deep_mm = std::max(extent.deep_mm, cells.deep[n]);
@@ -131,7 +121,8 @@ void EngagementScan::keep_over(const Station& station, const CellRow& row, CellB
     if (cells.depth[n] > 0 && is_cut_by_own(middle, surface)) cells.depth[n] = -1;
   }
   int kept = 0;
-  for (int n = 0; n < cells.count; ++n) {
+  while (kept < cells.count && cells.depth[kept] > 0) ++kept;
+  for (int n = kept; n < cells.count; ++n) {
     cells.move(n, kept);
     kept += cells.depth[n] > 0 ? 1 : 0;
   }
@@ -143,7 +134,8 @@ void EngagementScan::take_batch(const Station& station, const CellRow& row, Cell
                                 CellFront& front) const {
   keep_over(station, row, cells);
   const CellWeights weights{weights_.height_rad.data(), weights_.thick_per_mm.data(),
-                            weights_.upright.data(), weights_.steps.data()};
+                            weights_.upright.data(), weights_.steps.data(),
+                            double{CellFront::kSteps}};
   // At the blank's edge heights are taken no further than they go.
   CellGround ground = ground_of(station, row);
   ground.most_above_tip = front.most_above_tip_mm;
@@ -306,6 +298,7 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
   front.most_above_tip_mm = heights_->bounds_mm().max.z - station.tip_z;
   weigh_cells(front.across * cell_);
   take_cells(station, front);
+  front.settle();
   for (std::size_t k = 0; k < front.at.size(); ++k) {
     const CellFront::Extent& extent = front.extent[k];
     if (extent.outer_mm <= 0) continue;
@@ -332,6 +325,7 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
     // Half of the outermost two's directions are beyond the sides.
     const bool is_side = k == 0 || k == CellFront::kSteps;
     contact.high_mm = front.share[k] / (is_side ? 0.5 * CellFront::kStep : CellFront::kStep);
+    if (contact.radius_mm <= 0) continue;
     if (contact.inner_mm <= flat_radius_ + 0.5 * front.across * cell_) contact.inner_mm = 0;
     contact.edge_mm = profile_mm(contact.radius_mm) - profile_mm(contact.inner_mm);
   }
@@ -346,12 +340,12 @@ EngagementLook EngagementScan::look_by_cells(const Station& station, bool anticl
     const std::size_t last = std::min<std::size_t>(k + about + 1, CellFront::kSteps);
     std::fill(may_have_wall.begin() + first, may_have_wall.begin() + last + 1, true);
   }
-  const auto wall_at = [&](double angle) {
+  const auto wall_at = [&](const FrontWay& way) {
     FrontContact wall;
-    const auto k = static_cast<std::size_t>((angle + kPi / 2) * (1 / CellFront::kStep));
-    wall.edge_mm = may_have_wall[k] || may_have_wall[k + 1] ? rim_height(station, angle) : 0;
+    const auto k = static_cast<std::size_t>((way.rad + kPi / 2) * (1 / CellFront::kStep));
+    wall.edge_mm = may_have_wall[k] || may_have_wall[k + 1] ? rim_height(station, way) : 0;
     if (wall.edge_mm <= 0) return wall;
-    const double beside = radius_ * (1 - kSameRadius) * std::abs(std::sin(angle));
+    const double beside = radius_ * (1 - kSameRadius) * std::abs(way.left);
     wall.deep_mm = wall.edge_mm + lift_[kLifts] - lift_of(beside);
     return wall;
   };

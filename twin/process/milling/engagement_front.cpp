@@ -14,7 +14,8 @@ namespace {
 constexpr double kThinnestFront_mm = 0.002;
 /// Radii along a ray, of cutters that are not flat; fewer, in some directions, to learn how far out
 /// they are in material at all; and steps to where they are.
-constexpr int kRadii = 30, kBriefRadii = 10, kFirstRadii = 8, kFirstRays = 6, kRadiusSteps = 2;
+constexpr int kRadii = 30, kBriefRadii = 10, kPointedRadii = 20, kFirstRadii = 8, kFirstRays = 6,
+              kRadiusSteps = 2;
 constexpr double kLeastStep = 0.1;
 /// What is no farther above material, of the radius, may be in some between two radii.
 constexpr double kNearMaterial = 0.06;
@@ -33,16 +34,23 @@ constexpr double kNeverEnds = std::numeric_limits<double>::infinity();
 /// A move of fewer cells is one of many.
 constexpr double kShort_cells = 8;
 
-/// sin(pi / 2 * k / count) of 0 .. count.
+/// Places of `count` parts from 0 to 1: closer together towards 1, or even ones.
 template <int count>
-const double* quarter_sines() {
-  static const std::array<double, count + 1> sines = [] {
-    std::array<double, count + 1> made{};
-    for (int k = 0; k <= count; ++k)
-      made[static_cast<std::size_t>(k)] = std::sin(kPi / 2 * k / count);
+struct Parts {
+  std::array<double, count + 1> sines{}, even{};
+};
+template <int count>
+const double* parts(bool is_even) {
+  static const Parts<count> of = [] {
+    Parts<count> made;
+    for (int k = 0; k <= count; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      made.sines[at] = std::sin(kPi / 2 * k / count);
+      made.even[at] = static_cast<double>(k) / count;
+    }
     return made;
   }();
-  return sines.data();
+  return is_even ? of.even.data() : of.sines.data();
 }
 
 /// Places across the disc of one that goes straight down, each way.
@@ -169,62 +177,55 @@ bool EngagementScan::is_cut_by_own(const Vec2& point, double height) const {
 /// A move that has made one of the low cells about there has cut the point, too; or the one that is
 /// held back. Cells that no known move has made are as
 /// they are.
-bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j) const {
+bool EngagementScan::is_cut_there(const Vec2& point, double z, int i, int j,
+                                  const std::array<float, 9>& kept) const {
   const double margin = std::max(kMargin * radius_, kLeastMargin_mm);
   if (behind_itself(point, behind_held(point, kNeverEnds)) <= z + margin) return true;
   if (is_cut_by_own(point, z)) return true;
   const float floor = heights_->floor_mm();
-  const auto is_low = [&](float kept) {
-    return static_cast<double>(std::max(floor, kept)) <= z + kThinnestFront_mm;
+  const auto is_low = [&](float height) {
+    return static_cast<double>(std::max(floor, height)) <= z + kThinnestFront_mm;
   };
-  const int last_x = std::min(heights_->nx() - 1, i + 1);
+  const int last_x = heights_->nx() - 1, last_y = heights_->ny() - 1;
   std::uint32_t asked = MeshPatch::kNotCut;
-  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
-    const HeightGrid::Row row(*heights_, y);
-    for (int x = std::max(0, i - 1); x <= last_x; ++x) {
-      if (!is_low(row.kept(x))) continue;
-      const std::uint32_t number = owners_->present_cut_id(x, y);
-      if (number == asked || !ways_->knows(number)) continue;
-      asked = number;
-      if (ways_->covers(number, point, z, margin)) return true;
-    }
+  for (int n = 0; n < 9; ++n) {
+    if (!is_low(kept[static_cast<std::size_t>(n)])) continue;
+    const int x = std::clamp(i + n % 3 - 1, 0, last_x), y = std::clamp(j + n / 3 - 1, 0, last_y);
+    const std::uint32_t number = owners_->present_cut_id(x, y);
+    if (number == asked || !ways_->knows(number)) continue;
+    asked = number;
+    if (ways_->covers(number, point, z, margin)) return true;
   }
-  return asked == MeshPatch::kNotCut && is_low(heights_->height(i, j));
+  return asked == MeshPatch::kNotCut && is_low(kept[4]);
 }
 
 /// How high material stands over the end of the profile at the cutter's rim; 0: there is none.
-double EngagementScan::rim_height(const Station& station, double angle) const {
+double EngagementScan::rim_height(const Station& station, const FrontWay& way) const {
   const Box& box = heights_->bounds_mm();
   const double z = std::max(station.tip_z, box.min.z) + lift_[kLifts];
   if (owners_ == nullptr) {
-    const double deep = material_at(station, before_rim(station, angle), radius_, true);
-    const double beside = radius_ * std::abs(std::sin(angle)) * lift_scale_;
+    const double deep = material_at(station, before_rim(station, way.rad), radius_, true);
+    const double beside = radius_ * std::abs(way.left) * lift_scale_;
     return deep > 0 ? std::max(0.0, deep + lift_[static_cast<std::size_t>(beside)] - lift_[kLifts])
                     : 0;
   }
   const Vec2 left(-station.ahead.y, station.ahead.x);
   const Vec2 point =
-      station.center +
-      radius_ * (1 - kSameRadius) * (std::cos(angle) * station.ahead + std::sin(angle) * left);
+      station.center + radius_ * (1 - kSameRadius) * (way.ahead * station.ahead + way.left * left);
   const auto i = static_cast<int>(std::floor((point.x - box.min.x) / heights_->cell_x_mm()));
   const auto j = static_cast<int>(std::floor((point.y - box.min.y) / heights_->cell_y_mm()));
   if (i < 0 || j < 0 || i >= heights_->nx() || j >= heights_->ny()) return 0;
   if (!is_on_way(station, point)) return 0;
-  float highest_kept = -std::numeric_limits<float>::infinity(), lowest_kept = -highest_kept;
-  const int last_x = std::min(heights_->nx() - 1, i + 1);
-  for (int y = std::max(0, j - 1); y <= std::min(heights_->ny() - 1, j + 1); ++y) {
-    const HeightGrid::Row row(*heights_, y);
-    for (int x = std::max(0, i - 1); x <= last_x; ++x) {
-      const float kept = row.kept(x);
-      highest_kept = std::max(highest_kept, kept), lowest_kept = std::min(lowest_kept, kept);
-    }
-  }
+  const std::array<float, 9> kept = heights_->kept_about(i, j);
+  float highest_kept = kept[0], lowest_kept = kept[0];
+  for (const float each : kept)
+    highest_kept = std::max(highest_kept, each), lowest_kept = std::min(lowest_kept, each);
   const auto highest = static_cast<double>(std::max(heights_->floor_mm(), highest_kept));
   const auto lowest = static_cast<double>(std::max(heights_->floor_mm(), lowest_kept));
   const double least = z + kThinnestFront_mm;
   if (highest <= least) return 0;
   const bool differs = lowest <= least || held_.length > 0 || own_until_ > 0 || own_ != nullptr;
-  if (differs && is_cut_there(point, z, i, j)) return 0;
+  if (differs && is_cut_there(point, z, i, j, kept)) return 0;
   const auto own = static_cast<double>(heights_->height(i, j));
   const double stands = own > least ? own : highest;
   if (highest - lowest <= kThinnestFront_mm) return stands - z;
@@ -338,8 +339,9 @@ FrontContact EngagementScan::contact_at(const Station& station, double angle) {
   FrontContact found;
   double wall = 0;
   if (engaged_ >= radius_ * (1 - kSameRadius)) {
-    wall = rim_height(station, angle);
-    const double beside = radius_ * (1 - kSameRadius) * std::abs(std::sin(angle));
+    const FrontWay way = FrontWay::of(angle);
+    wall = rim_height(station, way);
+    const double beside = radius_ * (1 - kSameRadius) * std::abs(way.left);
     if (wall > 0) {
       const double under = lift_[kLifts] - cutter_->height_mm(beside);
       found.radius_mm = radius_, found.deep_mm = wall + under;
@@ -433,9 +435,10 @@ EngagementScan::Ray EngagementScan::ray_at(const Station& station, double angle)
   return ray;
 }
 
-/// The place of a radius of so many ones, closer together farther out, where the profile is steep.
-double EngagementScan::radius_of(double quarter_sine) const {
-  return flat_radius_ + (reach_ - flat_radius_) * quarter_sine;
+/// Of so many radii: closer together farther out, where the profile is steep, but of what is
+/// pointed.
+double EngagementScan::radius_of(double part) const {
+  return flat_radius_ + (reach_ - flat_radius_) * part;
 }
 
 /// What is the same along all directions of a look, and of others that reach as far.
@@ -443,11 +446,12 @@ void EngagementScan::lay_radii(int count) {
   if (laid_reach_ == reach_ && radii_.size() == static_cast<std::size_t>(count) + 1) return;
   laid_reach_ = reach_;
   radii_.resize(static_cast<std::size_t>(count) + 1);
-  const double* const sines =
-      count == kRadii ? quarter_sines<kRadii>() : quarter_sines<kBriefRadii>();
+  const double* const places = count == kRadii        ? parts<kRadii>(is_pointed_)
+                               : count == kBriefRadii ? parts<kBriefRadii>(is_pointed_)
+                                                      : parts<kPointedRadii>(is_pointed_);
   for (int k = 0; k <= count; ++k) {
     RayRadius& at = radii_[static_cast<std::size_t>(k)];
-    at.mm = radius_of(sines[k]) * (1 - kSameRadius);
+    at.mm = radius_of(places[k]) * (1 - kSameRadius);
     at.height_mm = cutter_->height_mm(at.mm);
     if (k > 0) at.step = step_between(radii_[static_cast<std::size_t>(k - 1)].mm, at.mm);
   }
@@ -469,9 +473,9 @@ double EngagementScan::reach_of(const Station& station) {
   if (is_flat()) return engaged_;
   const double near_mm = kNearMaterial * radius_;
   int farthest = -1;
-  const double* const sines = quarter_sines<kFirstRadii>();
+  const double* const places = parts<kFirstRadii>(is_pointed_);
   for (int k = 0; k < RayPlaces::kMost; ++k)
-    first_places_.radius[k] = radius_of(sines[std::min(k, kFirstRadii)]) * (1 - kSameRadius);
+    first_places_.radius[k] = radius_of(places[std::min(k, kFirstRadii)]) * (1 - kSameRadius);
   for (int n = 0; n <= kFirstRays && farthest < kFirstRadii; ++n) {
     const Ray ray = ray_at(station, kPi * (static_cast<double>(n) / kFirstRays - 0.5) * 0.99);
     over_places(ray, first_places_, kFirstRadii + 1);
@@ -480,7 +484,7 @@ double EngagementScan::reach_of(const Station& station) {
     }
   }
   const bool is_all = farthest < 0 || farthest + 1 >= kFirstRadii;
-  return is_all ? engaged_ : radius_of(sines[farthest + 1]);
+  return is_all ? engaged_ : radius_of(places[farthest + 1]);
 }
 
 /// The mean over a stretch, on which a thickness goes evenly from one to the other, of what of it
@@ -654,13 +658,16 @@ EngagementLook EngagementScan::look_ahead(const HeightGrid& heights, const Cutte
   const double ahead_mm = !is_flat() ? kAheadCells * cell_ : knows_walls ? kAhead * radius_ : 0;
   fresh_mm_ = asked.behind_mm > 0 ? asked.behind_mm + ahead_mm : 0;
   const Station station = station_at(asked.at + ahead_mm / length_);
-  if (asked.is_brief && is_fine()) {
+  const bool pointed = is_pointed(cutter, cell_);
+  if (pointed != is_pointed_) is_pointed_ = pointed, laid_reach_ = -1;
+  if (asked.is_brief && asks_cells(cutter, cell_)) {
     EngagementLook look = look_by_cells(station, asked.anticlockwise);
     if (look.is_engaged()) look.cuts_centre = cuts_centre(station_at(asked.at));
     return look;
   }
   reach_ = reach_of(station);
-  if (!is_flat()) lay_radii(asked.is_brief ? kBriefRadii : kRadii);
+  const int brief_radii = is_pointed_ ? kPointedRadii : kBriefRadii;
+  if (!is_flat()) lay_radii(asked.is_brief ? brief_radii : kRadii);
   FrontRays rays(kRays, radius_, is_flat());
   rays.sweep([&](double angle) { return contact_at(station, angle); });
   EngagementLook look = rays.look(asked.anticlockwise);

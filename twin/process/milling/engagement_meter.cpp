@@ -23,8 +23,9 @@ constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// them; a move costs some in itself. What is saved up, or borrowed where the way turns and where a
 /// pass begins, is so many looks at most.
 constexpr double kCellsOfLook = 2500, kCellsOfRoundLook = 100'000, kShareOfCells = 0.25;
-/// Of a look, one in brief: by its cells, and of coarse ones; and where it sees nothing.
-constexpr double kBrief = 0.15, kCoarseBrief = 0.4, kOfAir = 0.1;
+/// Of a look, one in brief: by its cells, by rays, and by those of what is pointed; and where it
+/// sees nothing.
+constexpr double kBrief = 0.15, kBriefRays = 0.4, kPointedRays = 0.6, kOfAir = 0.1;
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// So many in brief are free, that a short program has them.
 constexpr int kFreeLooks = 100;
@@ -74,6 +75,12 @@ void EngagementMeter::mount(int tool, const Cutter& cutter) {
   diameter_mm_ = 2 * cutter.radius_mm();
   is_ball_ = is_ball_end(cutter);
   is_flat_ = cutter.height_mm(cutter.radius_mm() * (1 - 1e-9)) <= 0;
+  look_cells_ = cutter.height_mm(0.9 * cutter.radius_mm()) <= 0 ? kCellsOfLook : kCellsOfRoundLook;
+  const double cell_mm = stock_.cell_mm();
+  const bool is_fine_flat = is_flat_ && cutter.radius_mm() >= EngagementScan::kFineCells * cell_mm;
+  brief_ = is_fine_flat || EngagementScan::asks_cells(cutter, cell_mm) ? kBrief
+           : EngagementScan::is_pointed(cutter, cell_mm)               ? kPointedRays
+                                                                       : kBriefRays;
   lift();
   has_held_ = false;
 }
@@ -138,6 +145,13 @@ void EngagementMeter::flush() {
   from_ = to_;
 }
 
+/// Of a move that is the same all along.
+void EngagementMeter::tell_all(const EngagementLook& look) {
+  if (!upright_) return tell(look, 0, 1);
+  add(0, 1, look);
+  flush();
+}
+
 void EngagementMeter::tell(const EngagementLook& mean, double from, double to) {
   const bool is_all = from <= 0 && to >= 1;
   const CutMove part = is_all ? CutMove() : part_of(*move_, from, to);
@@ -159,6 +173,7 @@ double EngagementMeter::most_mm2(const EngagementLook& look, double down_rad) co
   const double disc_mm2 = kPi / 4 * look.effective_mm * look.effective_mm;
   if (look.is_plunge) return disc_mm2;
   const double wide_mm = look.wide_mm + look.gaps_mm + stock_.cell_mm();
+  if (down_rad == 0) return wide_mm * (look.deep_mm + kShortOfDepth_mm);
   return wide_mm * (look.deep_mm + kShortOfDepth_mm) * std::cos(down_rad) +
          disc_mm2 * std::sin(down_rad);
 }
@@ -216,8 +231,6 @@ void EngagementMeter::refine(const Node& from, const Node& to, int halvings) {
 /// What the last look has said is taken for this short move, too.
 bool EngagementMeter::counts_still(const CutMove& move) {
   const double cell_mm = stock_.cell_mm();
-  look_cells_ =
-      cutter_->height_mm(0.9 * cutter_->radius_mm()) <= 0 ? kCellsOfLook : kCellsOfRoundLook;
   saved_cells_ += kShareOfCells * (kCellsOfMove + length_mm_ * diameter_mm_ / (cell_mm * cell_mm));
   saved_cells_ = std::min(saved_cells_, kMostSaved * look_cells_);
   if (since_mm_ < 0 || last_.is_plunge) return false;
@@ -325,15 +338,15 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   length_mm_ = way_length_mm(move);
   down_rad_ = down_of(move, length_mm_);
   upright_ = UprightArc::of(move);
-  turnings_ = upright_ ? upright_->turning_parts() : std::vector<double>{};
+  turnings_.clear();
+  if (upright_) turnings_ = upright_->turning_parts();
   until_ = 1;
   taken_ = {};
   taken_.measured = true;
   if (length_mm_ <= 0) return taken_;
   from_ = to_ = 0;
   if (!feed.near) {
-    add(0, 1, {});
-    flush();
+    tell_all({});
     since_mm_ = -1;
     return taken_;
   }
@@ -342,8 +355,7 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   is_short_ = length_mm_ < farthest && turnings_.empty() && !steep;
   if (is_short_ && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
-    add(0, 1, last_);
-    flush();
+    tell_all(last_);
     return taken_;
   }
   hand_over_();
@@ -366,8 +378,7 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     // Often in brief is better than seldom.
     is_brief_ = saved_cells_ < look_cells_;
     last_ = look(0.5);
-    const bool is_fine = cutter_->radius_mm() >= EngagementScan::kFineCells * stock_.cell_mm();
-    const double cost = look_cells_ * (!is_brief_ ? 1 : is_fine ? kBrief : kCoarseBrief);
+    const double cost = look_cells_ * (is_brief_ ? brief_ : 1);
     saved_cells_ -= last_.is_engaged() ? cost : kOfAir * cost;
     saved_cells_ = std::max(saved_cells_, -(kMostBorrowed + 1) * look_cells_);
     is_brief_ = false;

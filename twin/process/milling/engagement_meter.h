@@ -92,6 +92,7 @@ class EngagementMeter {
   void take_along(double from, double to, int places);
   void take_upright(double farthest_mm);
   void tell(const EngagementLook& mean, double from, double to);
+  void tell_all(const EngagementLook& look);
   double most_mm2(const EngagementLook& look, double down_rad) const;
   double farthest_mm() const;
   double closest_mm() const;
@@ -118,6 +119,7 @@ class EngagementMeter {
   bool is_brief_ = false;  ///< the look that comes
   bool is_short_ = false;  ///< the present move
   double saved_cells_ = 0, look_cells_ = 0;
+  double brief_ = 1;  ///< of a look's cost, one in brief
   int free_looks_ = 0;
   bool is_thrifty_ = true;  ///< looks at short moves may not cost much
   double spacing_mm_ = 0;   ///< as far as it counts

@@ -45,6 +45,10 @@ class EngagementScan {
   static constexpr int kLeastGapBins = 3;
   /// Fewer cells across a cutter's radius say too little of where on it material is.
   static constexpr double kFineCells = 12;
+  /// Looks in brief ask cells alone: of what is not flat, so many cells wide, and not pointed.
+  /// Beside its own passes a cone is in few of them, next to its tip.
+  static bool asks_cells(const Cutter& cutter, double cell_mm);
+  static bool is_pointed(const Cutter& cutter, double cell_mm);
 
   static bool takes(const Cutter& cutter, const CutMove& move);
   /// One of front_kernels(); without it, the first of them.
@@ -96,9 +100,9 @@ class EngagementScan {
   /// of it. At its rim walls are where the moves that made them have left them, and the sides of a
   /// box are exact; of what is not flat, surfaces are those between the heights. The depth is to
   /// the heights. Straight down: at the end of the way, whether there is anything. On slopes the
-  /// bottom's share does not count. In brief: of what is not flat, and kFineCells or more across
-  /// its radius, by the heights of its cells alone, so that walls below its rim are known to half a
-  /// cell. 1 us; 90 us of what is not flat, 20 in brief.
+  /// bottom's share does not count. In brief: where asks_cells(), by the heights of its cells
+  /// alone, so that walls below its rim are known to half a cell. 1 us; 90 us of what is not flat,
+  /// 20 in brief.
   EngagementLook look_ahead(const HeightGrid& heights, const Cutter& cutter, const CutMove& move,
                             const Look& look);
 
@@ -220,8 +224,10 @@ class EngagementScan {
   LiftTable lift_table() const { return {lift_.data(), lift_scale_, double{kLifts}}; }
   double material_at(const Station& station, const Vec2& point, double least_radius,
                      bool at_rim) const;
-  double rim_height(const Station& station, double angle) const;
-  bool is_cut_there(const Vec2& point, double z, int i, int j) const;
+  double rim_height(const Station& station, const FrontWay& way) const;
+  /// `kept`: heights about that cell (HeightGrid::kept_about()).
+  bool is_cut_there(const Vec2& point, double z, int i, int j,
+                    const std::array<float, 9>& kept) const;
   double lift_at(const Vec2& point, const Station& station) const {
     const Vec2 arm = point - station.center;
     return lift_of(std::sqrt(arm.x * arm.x + arm.y * arm.y));
@@ -247,7 +253,7 @@ class EngagementScan {
   };
   Ray ray_at(const Station& station, double angle) const;
   double over_ray(const Ray& ray, double radius) const;
-  double radius_of(double quarter_sine) const;
+  double radius_of(double part) const;
   double reach_of(const Station& station);
   double of_thin_chips(double normal, double ahead) const;
   static double counted(double from_mm, double to_mm);
@@ -281,10 +287,13 @@ class EngagementScan {
   struct CellFront {
     static constexpr int kSteps = FrontRays::kSteps;
     static constexpr double kStep = kPi / kSteps;
+    static constexpr double kRounding = 1e-12;  ///< is left of sums that cancel
     int each = 1, rows = 1;  ///< of so many cells in a row, and of so many rows, one is asked
     double across = 1;       ///< so many cells wide is what it stands for
     std::array<FrontContact, kSteps + 1> at{};
     std::array<double, kSteps + 1> share{};  ///< of the height, times the angle
+    /// What share[k] is more than share[k + 1], at k + 1.
+    std::array<double, kSteps + 3> rises{};
     /// Of what there is in a direction: the nearest, the farthest, and the deepest.
     struct Extent {
       double inner_mm = std::numeric_limits<double>::infinity(), outer_mm = 0, deep_mm = 0;
@@ -297,14 +306,16 @@ class EngagementScan {
     Vec2 farthest{0}, leftmost{0}, rightmost{0}, deepest{0};
     double most_above_tip_mm = 0;  ///< heights go no further
 
-    /// What lies between two steps is shared by them.
-    void add(double step, double height_rad) {
-      if (step < 0 || step >= kSteps) return;
-      const int low = static_cast<int>(step);
-      const double beyond = step - low;
-      double* const at_low = share.data() + low;
-      at_low[0] += height_rad * (1 - beyond);
-      at_low[1] += height_rad * beyond;
+    void add(const CellBatch::End& end, int n) {
+      double* const at_low = rises.data() + end.low[n];
+      at_low[0] += end.first[n], at_low[1] += end.second[n], at_low[2] += end.third[n];
+    }
+    void settle() {
+      double sum = rises[kSteps + 2];
+      for (std::size_t k = kSteps + 1; k-- > 0;) {
+        sum += rises[k + 1];
+        share[k] = sum > kRounding ? sum : 0;
+      }
     }
   };
   /// Cells of a row, seen from the cutter's middle.
@@ -314,7 +325,6 @@ class EngagementScan {
     double y = 0;
     int j = 0, first = 0, last = 0;
   };
-  bool is_fine() const;
   CellGround ground_of(const Station& station, const CellRow& row) const;
   CellRow row_at(const Station& station, const CellFront& front, int j) const;
   void collect_row(const CellRow& row, int each, CellBatch& cells) const;
@@ -357,6 +367,7 @@ class EngagementScan {
   bool arc_ = false;
   bool is_ball_ = false;
   double radius_ = 0, flat_radius_ = 0;
+  bool is_pointed_ = false;
   double engaged_ = 0;   ///< greatest radius that can be in material
   double reach_ = 0;     ///< .. and that is, of what is not flat
   double fresh_mm_ = 0;  ///< from where the tool stood before; 0: no concern

@@ -82,7 +82,14 @@ struct CellBatch {
   alignas(32) Each deep;                 ///< how high material is over that
   /// Of those ahead of the cutter.
   double most_deep = 0, most_radius = 0, most_beside = 0, least_beside = 0;
-  alignas(32) Each share, spread;  ///< of the height, and of directions
+  /// The share of the height, spread evenly over the directions in which the cell is seen, from
+  /// one to the other: what each end of that adds up to, of directions in steps. Below an end all
+  /// steps have the same; at `low` and the two after it, that much more than at the next one.
+  struct End {
+    alignas(32) int low[kMost];
+    alignas(32) Each first, second, third;
+  };
+  End first_end, last_end;
   void move(int from, int to) {
     x[to] = x[from], y[to] = y[from], height[to] = height[from];
     radius[to] = radius[from], lift[to] = lift[from], depth[to] = depth[from];
@@ -131,7 +138,8 @@ struct CellWeights {
   const double* height_rad = nullptr;
   const double* thick_per_mm = nullptr;
   const double* upright = nullptr;  ///< a level chip's share that is normal to the cutter there
-  const double* steps = nullptr;
+  const double* steps = nullptr;    ///< so wide it is, as directions
+  double last_step = 0;             ///< of directions
 };
 
 struct FrontKernel {

@@ -263,6 +263,16 @@ static inline double direction_of(double y, double x) {
   return y < 0 ? -angle : angle;
 }
 
+/// Of directions up to `step`, `per_step` each; what is between two steps is shared by them.
+static inline void end_at(CellBatch::End& end, int n, double step, double per_step) {
+  const int low = static_cast<int>(step);
+  const double beyond = step - low, before = 1 - beyond;
+  const double third = 0.5 * per_step * beyond * beyond;
+  const double first = 0.5 * per_step * before * before;
+  end.low[n] = low;
+  end.first[n] = first, end.second[n] = per_step - first - third, end.third[n] = third;
+}
+
 static void place_cells(const CellGround& ground, const LiftTable& table,
                         const CellWeights& weights, double least, double per_step,
                         CellBatch& cells) {
@@ -280,14 +290,9 @@ static void place_cells(const CellGround& ground, const LiftTable& table,
   }
   const double *const height_rad = weights.height_rad, *const thick = weights.thick_per_mm,
                       *const steps = weights.steps;
+  double share[CellBatch::kMost];
   KERF_EACH_APART
-  for (int n = 0; n < count; ++n) {
-    const double radius = most_of(cells.radius[n], least);
-    const int k = static_cast<int>(radius * scale);
-    cells.radius[n] = radius;
-    cells.share[n] = least_of(1.0, thick[k] * cells.depth[n]) * height_rad[k];
-    cells.spread[n] = steps[k];
-  }
+  for (int n = 0; n < count; ++n) cells.radius[n] = most_of(cells.radius[n], least);
   if (ground.fresh > 0) {
     const double* const upright = weights.upright;
     const double half = 0.5 * ground.fresh, thin = ground.thin, thinnest = ground.thinnest;
@@ -297,8 +302,24 @@ static void place_cells(const CellGround& ground, const LiftTable& table,
       const int k = static_cast<int>(radius * scale);
       const double chip = within(half * upright[k] * (cells.ahead[n] / radius), thinnest, thin);
       const double counts = thick[k] * (thin / chip);
-      cells.share[n] = least_of(1.0, counts * cells.depth[n]) * height_rad[k];
+      share[n] = least_of(1.0, counts * cells.depth[n]) * height_rad[k];
     }
+  } else {
+    KERF_EACH_APART
+    for (int n = 0; n < count; ++n) {
+      const int k = static_cast<int>(cells.radius[n] * scale);
+      share[n] = least_of(1.0, thick[k] * cells.depth[n]) * height_rad[k];
+    }
+  }
+  const double last_step = weights.last_step;
+  KERF_EACH_APART
+  for (int n = 0; n < count; ++n) {
+    const double wide = steps[static_cast<int>(cells.radius[n] * scale)], step = cells.step[n];
+    const double from = within(step - 0.5 * wide, 0.0, last_step);
+    const double to = within(step + 0.5 * wide, 0.0, last_step);
+    const double dense = from < to ? share[n] / wide : 0.0;
+    end_at(cells.first_end, n, from, -dense);
+    end_at(cells.last_end, n, to, dense);
   }
   KERF_EACH_APART
   for (int n = 0; n < count; ++n) {

@@ -14,6 +14,16 @@ const std::array<double, FrontRays::kSteps + 1>& FrontRays::step_sines() {
   return sines;
 }
 
+const std::array<FrontWay, FrontRays::kSteps + 1>& FrontRays::step_ways() {
+  static const std::array<FrontWay, kSteps + 1> ways = [] {
+    std::array<FrontWay, kSteps + 1> made{};
+    for (std::size_t k = 0; k <= kSteps; ++k)
+      made[k] = FrontWay::of(std::clamp(step_rad(k), kRim_rad - kPi / 2, kPi / 2 - kRim_rad));
+    return made;
+  }();
+  return ways;
+}
+
 /// A height that changes evenly: by Simpson's rule, which is right of its products.
 void FrontRays::add(const Direction& from, const Direction& to) {
   span(from, to);
@@ -29,13 +39,13 @@ void FrontRays::add(const Direction& from, const Direction& to) {
   heights_.square += sum([](const Direction& at) { return at.high_mm * at.high_mm; });
 }
 
-/// What lies between two directions that are both in material is, too.
-void FrontRays::span(const Direction& from, const Direction& to) {
-  const bool was = from.right_mm <= from.left_mm, is = to.right_mm <= to.left_mm;
-  if (!was && !is) return;
-  if (!was) return spans_.push_back({to.right_mm, to.left_mm});
-  if (!is) return spans_.push_back({from.right_mm, from.left_mm});
-  spans_.push_back({std::min(from.right_mm, to.right_mm), std::max(from.left_mm, to.left_mm)});
+/// Most lie over the one before.
+void FrontRays::add_span(const Span& span) {
+  if (spans_.empty() || span.right_mm > spans_.back().left_mm ||
+      spans_.back().right_mm > span.left_mm)
+    return spans_.push_back(span);
+  Span& last = spans_.back();
+  last = {std::min(last.right_mm, span.right_mm), std::max(last.left_mm, span.left_mm)};
 }
 
 double FrontRays::gaps_mm() {

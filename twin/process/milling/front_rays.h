@@ -24,6 +24,12 @@ struct FrontContact {
   double high_mm = 0;    ///< the height of that; what is next to nothing counts by its thickness
 };
 
+/// A direction from the tool's middle, from straight ahead to the left.
+struct FrontWay {
+  double rad = 0, ahead = 1, left = 0;  ///< its cosine and sine
+  static FrontWay of(double rad) { return {rad, std::cos(rad), std::sin(rad)}; }
+};
+
 /// Asks for the contact in some directions, and in more where it changes (down to a 32nd of the
 /// directions' distance). Angles are from straight ahead to the left. What lies between two
 /// directions, with none of it in either, is not seen.
@@ -47,8 +53,8 @@ class FrontRays {
   void sweep(const ContactAt& contact_at);
   /// Instead: what is known at even steps from one side to the other, of what is not flat, and of
   /// the lateral places from `low_mm` to `high_mm` (to the left) where it is in material.
-  /// `wall_at(angle)`: what stands over the profile's end besides (edge_mm) and how deep that is;
-  /// asked for at the steps, and more closely where it begins or ends.
+  /// `wall_at(FrontWay)`: what stands over the profile's end besides (edge_mm) and how deep that
+  /// is; asked for at the steps, and more closely where it begins or ends.
   template <class WallAt>
   void take(std::span<const FrontContact, kSteps + 1> contacts, const WallAt& wall_at,
             double low_mm, double high_mm);
@@ -95,6 +101,8 @@ class FrontRays {
   }
   /// Of the k-th of kSteps, from straight ahead.
   static double step_rad(std::size_t k) { return kPi * (static_cast<double>(k) / kSteps - 0.5); }
+  /// The same, those at the very sides a little before them.
+  static const std::array<FrontWay, kSteps + 1>& step_ways();
   static const std::array<double, kSteps + 1>& step_sines();
   /// All between the two is in material.
   void count(double from, double to) {
@@ -113,7 +121,18 @@ class FrontRays {
   void weigh(const ContactAt& contact_at, const Direction& from, const Direction& to, int halvings);
   void add(const Direction& from, const Direction& to);
   void settle();
-  void span(const Direction& from, const Direction& to);
+  struct Span {
+    double right_mm, left_mm;
+  };
+  /// What lies between two directions that are both in material is, too.
+  void span(const Direction& from, const Direction& to) {
+    const bool was = from.right_mm <= from.left_mm, is = to.right_mm <= to.left_mm;
+    if (was && is)
+      add_span({std::min(from.right_mm, to.right_mm), std::max(from.left_mm, to.left_mm)});
+    else if (was || is)
+      add_span(was ? Span{from.right_mm, from.left_mm} : Span{to.right_mm, to.left_mm});
+  }
+  void add_span(const Span& span);
   double gaps_mm();
 
   int count_;
@@ -123,9 +142,6 @@ class FrontRays {
   double low_mm_ = std::numeric_limits<double>::infinity(), high_mm_ = -low_mm_;
   double left_rad_ = 0, right_rad_ = 0;
   /// Of what is not flat, across the way; and how far they may be apart and belong together.
-  struct Span {
-    double right_mm, left_mm;
-  };
   std::vector<Span> spans_;
   double apart_mm_ = 0;
   double right_of_way_rad_ = 0;  ///< of angle_rad
@@ -194,9 +210,7 @@ void FrontRays::take(std::span<const FrontContact, kSteps + 1> contacts, const W
   // Where it begins and ends is somewhere between two steps.
   apart_mm_ = radius_mm_ * kPi / kSteps;
   // Steps at the very sides are a little before them: what is at a side itself is passed by.
-  const auto wall_of = [&](std::size_t k) {
-    return wall_at(std::clamp(step_rad(k), kRim_rad - kPi / 2, kPi / 2 - kRim_rad));
-  };
+  const std::array<FrontWay, kSteps + 1>& ways = step_ways();
   const auto note_wall = [&](const FrontContact& at, const FrontContact& wall, std::size_t k) {
     FrontContact both = at;
     if (wall.edge_mm > 0) {
@@ -206,17 +220,17 @@ void FrontRays::take(std::span<const FrontContact, kSteps + 1> contacts, const W
     }
     if (both.radius_mm <= 0) return;
     const Direction across = direction_of(step_rad(k), sines[k], both);
-    span(across, across);
+    add_span({across.right_mm, across.left_mm});
     found_.deep_mm = std::max(found_.deep_mm, both.deep_mm);
     found_.effective_mm = std::max(found_.effective_mm, 2 * both.radius_mm);
     found_.contact_mm = std::max(found_.contact_mm, both.edge_mm);
     if (wall.edge_mm > 0) widen(radius_mm_, step_rad(k));
   };
-  FrontContact before = wall_of(0);
+  FrontContact before = wall_at(ways[0]);
   note_wall(contacts[0], before, 0);
   Direction last = direction_of(step_rad(0), sines[0], contacts[0]);
   for (std::size_t k = 1; k <= kSteps; ++k) {
-    const FrontContact wall = wall_of(k);
+    const FrontContact wall = wall_at(ways[k]);
     note_wall(contacts[k], wall, k);
     const Direction next = direction_of(step_rad(k), sines[k], contacts[k]);
     span(last, next);
@@ -232,7 +246,7 @@ void FrontRays::take(std::span<const FrontContact, kSteps + 1> contacts, const W
       double in = begins ? to : from, off = begins ? from : to;
       for (int n = 0; n < kHalvings; ++n) {
         const double middle = 0.5 * (in + off);
-        (wall_at(middle).edge_mm > 0 ? in : off) = middle;
+        (wall_at(FrontWay::of(middle)).edge_mm > 0 ? in : off) = middle;
       }
       const double edge = 0.5 * (in + off),
                    there = low + (edge - from) / (to - from) * (high - low);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "twin/job/blank_choice.h"
@@ -75,7 +76,9 @@ void MillingStage::engage(const Motion& m, const TimedStep& step, InFlight& flig
   double most_mm3 = 0, start_s = step.start_s;
   for (const CutMove& move : divided_) {
     const double duration_s = step.duration_s * way_length_mm(move) / ways;
-    const CutMove looked_at = as_circle(move);
+    std::optional<CutMove> circle;
+    if (move.arc) circle = as_circle(move);
+    const CutMove& looked_at = circle ? *circle : move;
     const EngagementMeter::Taken& taken =
         engagement_->take({cutting(), looked_at, near, m.spindle == SpindleState::kCounterclockwise,
                            m.source, start_s, duration_s});

@@ -8,8 +8,6 @@ namespace {
 
 /// A surface bends down by more than this part of what it bends up in a pass.
 constexpr double kBendsDown = 0.25;
-/// Heights are floats.
-constexpr double kRounding_mm = 2e-5;
 
 /// Through the values of three cells, at a place in cells from the first.
 double parabola(double a, double b, double c, double at) {
@@ -42,14 +40,11 @@ void ScallopScan::read(bool is_row, int line) {
   }
 }
 
-bool ScallopScan::is_crest(std::size_t k) const {
-  // Few bend down at all.
-  const double bend = z_[k - 1] - 2 * z_[k] + z_[k + 1];
-  if (bend >= -kRounding_mm) return false;
+/// More than heights that are rounded, of one tool.
+bool ScallopScan::bends_down(std::size_t k, double bend) const {
   const int tool = tool_of_[k];
   if (tool < 0 || tool_of_[k - 1] != tool || tool_of_[k + 1] != tool) return false;
-  const double least = kBendsDown * edge_mm_ * edge_mm_ / ways_.radius_mm(tool) + kRounding_mm;
-  return bend < -least;
+  return bend > kBendsDown * edge_mm_ * edge_mm_ / ways_.radius_mm(tool) + kRounding_mm;
 }
 
 /// Where what rises on one side meets what falls on the other.

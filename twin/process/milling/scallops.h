@@ -33,6 +33,7 @@ struct ScallopsOfTool {
 class ScallopScan {
  public:
   static constexpr int kLines = 100, kLeastCells = 4;
+  static constexpr double kRounding_mm = 2e-5;  ///< heights are floats
 
   ScallopScan(const HeightGrid& heights, const PresentHeights& owners, const PastWays& ways)
       : heights_(heights), owners_(owners), ways_(ways) {}
@@ -51,7 +52,12 @@ class ScallopScan {
   };
   void read(bool is_row, int line);
   void walk(bool is_row, int line);
-  bool is_crest(std::size_t k) const;
+  bool is_crest(std::size_t k) const {
+    // Few bend down at all.
+    const double bend = z_[k - 1] - 2 * z_[k] + z_[k + 1];
+    return bend < -kRounding_mm && bends_down(k, -bend);
+  }
+  bool bends_down(std::size_t k, double bend) const;
   Crest crest_at(std::size_t first, std::size_t last) const;
   void take(bool is_row, int line, const Crest& from, const Crest& to);
 

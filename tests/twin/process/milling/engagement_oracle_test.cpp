@@ -94,6 +94,46 @@ TEST_P(EngagementOracleTest, AnglesAreThoseOfExactGeometry) {
   EXPECT_GE(off.within, (flat ? 1.0 : kIsSanitized ? 0.8 : 0.9) * off.looks) << off.text();
 }
 
+/// Passes side by side, as surfaces and engravings have them, a cell and a third to five cells
+/// apart: what is left between two of them is thin, and next to the tip. By looks in brief.
+TEST(EngagementPasses, AreNarrowFronts) {
+  for (const std::string shape : {"ball:6", "bull:6:2", "vee:6:90", "vee:3:60", "drill:6:118"}) {
+    const Cutter cutter = parse_shape(shape).value();
+    EngagementErrors brief;
+    for (const double apart_mm : {0.13, 0.333, 0.5}) {
+      ZMapOptions options;
+      options.blank = parse_blank("box:0,0,-5:30,12,0").value();
+      options.cell_mm = kOracleCell_mm;
+      const std::unique_ptr<ZMap> stock = std::move(ZMap::create(options).value());
+      stock->keep_cut_ids(true);
+      EngagementOracle oracle(stock->bounds_mm());
+      PastWays ways;
+      ways.mount(cutter);
+      EngagementScan scan;
+      for (std::uint64_t n = 0; n < 8; ++n) {
+        CutMove move;
+        move.id = n;
+        const double y = 5 + static_cast<double>(n) * apart_mm;
+        move.from_mm = {n % 2 == 0 ? 3.0 : 27.0, y, -0.6};
+        move.to_mm = {n % 2 == 0 ? 27.0 : 3.0, y, -0.6};
+        for (const double part : {0.31, 0.503}) {
+          EngagementScan::Look asked;
+          asked.at = part, asked.owners = stock.get(), asked.ways = &ways, asked.is_brief = true;
+          brief.add(scan.look_ahead(stock->present_heights().value(), cutter, move, asked),
+                    oracle.look(cutter, move, part));
+        }
+        std::vector<CutReport> reports;
+        stock->cut(cutter, {&move, 1}, reports);
+        stock->finish(reports);
+        ways.add(move);
+        oracle.add(cutter, move);
+      }
+    }
+    EXPECT_EQ(brief.looks, 48) << shape;
+    EXPECT_GE(brief.within, 44) << shape << ' ' << brief.text();
+  }
+}
+
 /// What random moves remove in cells of 0.1 mm, against cells of a fifth of that.
 TEST(EngagementVolume, IsThatOfADenseGrid) {
   std::mt19937 random(5);

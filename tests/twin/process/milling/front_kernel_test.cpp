@@ -162,6 +162,72 @@ TEST(FrontKernel, CellsAreInMaterialThatTheHeldWayAndTheEndHaveLeft) {
   }
 }
 
+/// A cell's share is spread evenly over the directions in which it is seen, and what is between two
+/// steps is shared by them: as by 100 000 places, one after the other; past the sides nothing is.
+/// Directions are told to 2e-5 rad, which is 0.0005 of a step, of a share of 0.1.
+TEST(FrontKernel, ACellsShareIsSpreadOverItsDirections) {
+  std::vector<double> flat(1026, 0.0), height(1026, 0.25), thick(1026, 0.5), upright(1026, 0.0);
+  const LiftTable table{flat.data(), 1024 / 2.0, 1024};
+  constexpr int kSteps = 72;
+  for (const double wide : {0.3, 1.0, 4.7, 30.0}) {
+    std::vector<double> steps(1026, wide);
+    const CellWeights weights{height.data(), thick.data(), upright.data(), steps.data(),
+                              double{kSteps}};
+    for (const double degrees : {-89.5, -31.0, 0.0, 7.5, 88.0, 93.0}) {
+      std::vector<double> expected(kSteps + 1, 0.0);
+      const double step = (degrees + 90) * kSteps / 180;
+      constexpr int kPlaces = 100'000;
+      for (int n = 0; n < kPlaces; ++n) {
+        const double at = step + wide * ((n + 0.5) / kPlaces - 0.5);
+        if (at < 0 || at >= kSteps) continue;
+        const auto low = static_cast<std::size_t>(at);
+        const double beyond = at - static_cast<double>(low), share = 0.5 * 0.8 * 0.25 / kPlaces;
+        expected[low] += share * (1 - beyond), expected[low + 1] += share * beyond;
+      }
+      for (const FrontKernel& kernel : front_kernels()) {
+        CellBatch cells{};
+        cells.count = 1;
+        cells.x[0] = std::cos(degrees * kPi / 180), cells.y[0] = std::sin(degrees * kPi / 180);
+        cells.radius[0] = 1, cells.depth[0] = 0.8;
+        kernel.place_cells(CellGround{}, table, weights, 0, kSteps / kPi, cells);
+        std::vector<double> rises(kSteps + 3, 0.0);
+        for (const CellBatch::End* const end : {&cells.first_end, &cells.last_end}) {
+          const auto low = static_cast<std::size_t>(end->low[0]);
+          rises[low] += end->first[0], rises[low + 1] += end->second[0];
+          rises[low + 2] += end->third[0];
+        }
+        double sum = rises[kSteps + 2];
+        for (std::size_t k = kSteps + 1; k-- > 0;) {
+          sum += rises[k + 1];
+          EXPECT_NEAR(sum, expected[k], 4e-5) << kernel.name << ", " << wide << ' ' << degrees;
+        }
+      }
+    }
+  }
+}
+
+/// In a plane that nothing has cut a cone is as deep in all directions: half a turn. It goes 0.6 mm
+/// deep, so six cells far, and the cells next to its tip are seen in a wide angle.
+TEST(FrontKernel, AConeInAPlaneIsEngagedByHalfATurn) {
+  ZMapOptions options;
+  options.blank = parse_blank("box:0,0,-5:20,10,0").value();
+  options.cell_mm = 0.1;
+  const std::unique_ptr<ZMap> stock = std::move(ZMap::create(options).value());
+  const Cutter cutter = parse_shape("vee:6:90").value();
+  for (const double y : {5.0, 5.03}) {
+    CutMove move;
+    move.from_mm = {5, y, -0.6}, move.to_mm = {15, y, -0.6};
+    EngagementScan::Look asked;
+    asked.at = 0.5, asked.is_brief = true;
+    EngagementScan scan;
+    const EngagementLook look =
+        scan.look_ahead(stock->present_heights().value(), cutter, move, asked);
+    EXPECT_NEAR(look.angle_rad, kPi, 4 * kPi / 180) << y;
+    EXPECT_NEAR(look.entry_rad, 0, 2 * kPi / 180) << y;
+    EXPECT_NEAR(look.exit_rad, kPi, 2 * kPi / 180) << y;
+  }
+}
+
 /// Blocks of 2 x 4 cells of a plain at z = 0 that rises by 1 to the right, a cone of 1 in 1 with
 /// its tip at z = -1: what is higher than that, and asked about, is collected, to a bit of slack.
 TEST(FrontKernel, BlocksGiveTheCellsThatAreHigherThanTheCutter) {
