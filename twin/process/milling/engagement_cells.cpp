@@ -97,7 +97,7 @@ CellGround EngagementScan::ground_of(const Station& station, const CellRow& row)
 /// Leaves those cells that are in material, in the way and on no slope that it has cut.
 void EngagementScan::keep_over(const Station& station, const CellRow& row, CellBatch& cells) const {
   HeldWay held;
-  const bool has_closed_form = held_.slope == 0 || is_ball_;
+  const bool has_closed_form = held_.slope == 0 || side_.is_ball;
   if (held_.length > 0 && has_closed_form) {
     held = {held_.start.x, held_.start.y, held_.direction.x, held_.direction.y, held_.length,
             held_.z,       held_.slope,   held_.lean,        held_.lowest};

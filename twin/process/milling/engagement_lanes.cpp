@@ -147,9 +147,8 @@ double EngagementScan::behind_way(const Vec2& point, double height) const {
   const double half = std::sqrt(half2);
   const double low = std::max(0.0, along - half), high = std::min(held.length, along + half);
   if (is_flat()) return std::min(height, held.z + held.slope * (held.slope < 0 ? high : low));
-  // A ball is lowest where its sphere, cut along the way, leans as the way does.
-  if (is_ball_)
-    return std::min(height, surface_at(std::clamp(along - held.lean * half, low, high)));
+  if (const std::optional<double> lowest = side_.lowest_mm(held.slope, std::abs(beside), half, 0))
+    return std::min(height, surface_at(std::clamp(along + *lowest, low, high)));
   const double least = golden_section(surface_at, low, high, kHeldSteps).least;
   return std::min(height, least - kHeldSlack_mm);
 }

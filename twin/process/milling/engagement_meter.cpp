@@ -13,10 +13,10 @@
 namespace kerf {
 namespace {
 
-constexpr double kFarthestOfDiameter = 0.5, kFarthestCells = 8;
-constexpr double kClosestOfDiameter = 1.0 / 8, kClosestCells = 2;
+constexpr double kFarthestOfWidth = 0.5, kFarthestCells = 8;
+constexpr double kClosestOfWidth = 1.0 / 8, kClosestCells = 2;
 constexpr int kMostHalvings = 3;
-constexpr double kSameOfDiameter = 0.05, kSameOfDepth = 0.05, kSameDepth_mm = 0.02;
+constexpr double kSameOfWidth = 0.05, kSameOfDepth = 0.05, kSameDepth_mm = 0.02;
 /// The last look at a move is so many cells before its end: at the end nothing is ahead of it.
 constexpr double kBeforeEnd_cells = 2, kLeastPart = 0.25;
 /// Looks at short moves cost as much as so many cells that are cut, and may cost this share of
@@ -29,9 +29,11 @@ constexpr double kBrief = 0.15, kBriefRays = 0.4, kPointedRays = 0.6, kOfAir = 0
 constexpr double kCellsOfMove = 300, kMostSaved = 4, kMostBorrowed = 8;
 /// So many in brief are free, that a short program has them.
 constexpr int kFreeLooks = 100;
-/// The longest way that a look counts for, of diameters, and how far it may turn: cos 30 degrees.
+/// The longest way that a look counts for, of the front's widths, and how far it may turn: cos 30
+/// degrees.
 constexpr double kMostSpacing = 2, kFarthestSpacing = 4, kSameWay = 0.866;
-/// Where air that was seen is asked whether it still is: parts of the radius, and directions.
+/// Where air that was seen is asked whether it still is: parts of the greatest radius that can be
+/// in material, and directions.
 constexpr double kProbedRadii[] = {0.2, 0.5, 0.75, 0.95};
 constexpr int kProbedRays = 8;
 /// Depths may be short by that.
@@ -100,7 +102,7 @@ bool EngagementMeter::is_same(const EngagementLook& a, const EngagementLook& b) 
   return a.is_plunge == b.is_plunge && a.is_engaged() == b.is_engaged() &&
          std::abs(a.angle_rad - b.angle_rad) <= kSameAngle_rad &&
          std::abs(a.entry_rad - b.entry_rad) <= kSameAngle_rad &&
-         std::abs(a.wide_mm - b.wide_mm) <= kSameOfDiameter * diameter_mm_ &&
+         std::abs(a.wide_mm - b.wide_mm) <= kSameOfWidth * front_mm_ &&
          std::abs(a.deep_mm - b.deep_mm) <= std::max(kSameDepth_mm, kSameOfDepth * deep);
 }
 
@@ -235,7 +237,7 @@ bool EngagementMeter::counts_still(const CutMove& move) {
   saved_cells_ = std::min(saved_cells_, kMostSaved * look_cells_);
   if (since_mm_ < 0 || last_.is_plunge) return false;
   const double way_mm = since_mm_ + length_mm_;
-  if (way_mm > kFarthestSpacing * diameter_mm_) return false;
+  if (way_mm > kFarthestSpacing * front_mm_) return false;
   if (glm::dot(way_of_short(move), last_ahead_) < kSameWay)
     return is_thrifty_ && saved_cells_ < -kMostBorrowed * look_cells_;
   if (way_mm <= spacing_mm_ || !is_thrifty_) return way_mm <= spacing_mm_;
@@ -258,8 +260,10 @@ bool EngagementMeter::meets_material(const CutMove& move) const {
   const Box& box = heights->bounds_mm();
   const Vec2 ahead(way_of_short(move)), left(-ahead.y, ahead.x);
   const double tip = std::max(std::min(move.from_mm.z, move.to_mm.z), box.min.z) + kSameDepth_mm;
+  if (tip >= box.max.z) return false;
+  const double reach = ways_.reach_mm(box.max.z - tip);
   for (const double part : kProbedRadii) {
-    const double radius = part * cutter_->radius_mm();
+    const double radius = part * reach;
     const double surface = tip + cutter_->height_mm(radius);
     for (int n = 0; n <= kProbedRays; ++n) {
       const double angle = kPi * (static_cast<double>(n) / kProbedRays - 0.5);
@@ -321,12 +325,20 @@ void EngagementMeter::take_upright(double farthest_mm) {
   }
 }
 
+/// As wide as the tool is where the blank is highest.
+double EngagementMeter::front_of(const CutMove& move) const {
+  if (is_flat_ || !move.is_vertical()) return diameter_mm_;
+  const double low_mm = std::min(move.from_mm.z, move.to_mm.z);
+  const double reach_mm = ways_.reach_mm(stock_.bounds_mm().max.z - low_mm);
+  return upright_ || reach_mm <= 0 ? diameter_mm_ : 2 * reach_mm;
+}
+
 double EngagementMeter::farthest_mm() const {
-  return std::max(kFarthestOfDiameter * diameter_mm_, kFarthestCells * stock_.cell_mm());
+  return std::max(kFarthestOfWidth * front_mm_, kFarthestCells * stock_.cell_mm());
 }
 
 double EngagementMeter::closest_mm() const {
-  return std::max(kClosestOfDiameter * diameter_mm_, kClosestCells * stock_.cell_mm());
+  return std::max(kClosestOfWidth * front_mm_, kClosestCells * stock_.cell_mm());
 }
 
 const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
@@ -351,8 +363,10 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     return taken_;
   }
   const bool steep = is_steep(move);
+  front_mm_ = front_of(move);
   const double farthest = farthest_mm();
-  is_short_ = length_mm_ < farthest && turnings_.empty() && !steep;
+  const double short_mm = std::max(farthest, kFarthestOfWidth * diameter_mm_);
+  is_short_ = length_mm_ < short_mm && turnings_.empty() && !steep;
   if (is_short_ && counts_still(move) && (last_.is_engaged() || !meets_material(move))) {
     since_mm_ += length_mm_;
     tell_all(last_);
@@ -383,7 +397,7 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
     saved_cells_ = std::max(saved_cells_, -(kMostBorrowed + 1) * look_cells_);
     is_brief_ = false;
     const bool alike = since_mm_ >= 0 && last_.is_engaged() && is_same(before, last_);
-    spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * diameter_mm_) : farthest;
+    spacing_mm_ = alike ? std::min(2 * spacing_mm_, kMostSpacing * front_mm_) : farthest;
     spacing_mm_ = std::max(spacing_mm_, farthest);
     since_mm_ = 0.5 * length_mm_;
     last_ahead_ = way_of_short(move);

@@ -94,6 +94,7 @@ class EngagementMeter {
   void tell(const EngagementLook& mean, double from, double to);
   void tell_all(const EngagementLook& look);
   double most_mm2(const EngagementLook& look, double down_rad) const;
+  double front_of(const CutMove& move) const;
   double farthest_mm() const;
   double closest_mm() const;
   void flush();
@@ -129,6 +130,7 @@ class EngagementMeter {
   const CutMove* move_ = nullptr;
   const HeightGrid* heights_ = nullptr;
   const SolidPoints* points_ = nullptr;  ///< where there are no heights
+  double front_mm_ = 0;                  ///< as wide as it may be in material
   double length_mm_ = 0, start_s_ = 0, duration_s_ = 0, down_rad_ = 0;
   std::optional<UprightArc> upright_;  ///< if it is one
   std::vector<double> turnings_;       ///< of that

@@ -78,7 +78,7 @@ void EngagementScan::set_cutter(const Cutter& cutter) {
   cutter_spec_ = cutter.spec();
   radius_ = cutter.radius_mm();
   flat_radius_ = flat_radius(cutter);
-  is_ball_ = is_ball_end(cutter);
+  side_ = ToolSide::of(cutter);
   weighed_mm_ = 0, laid_reach_ = -1;
   lift_.resize(kLifts + 2);
   lift_scale_ = kLifts / radius_;

@@ -20,6 +20,7 @@
 #include "twin/process/milling/front_kernel.h"
 #include "twin/process/milling/front_rays.h"
 #include "twin/process/milling/past_ways.h"
+#include "twin/process/milling/tool_side.h"
 #include "twin/process/milling/upright_arc.h"
 #include "twin/process/milling/way_spans.h"
 
@@ -365,7 +366,7 @@ class EngagementScan {
   mutable CellBatch cells_{};
   Motion motion_;  ///< of arcs
   bool arc_ = false;
-  bool is_ball_ = false;
+  ToolSide side_;
   double radius_ = 0, flat_radius_ = 0;
   bool is_pointed_ = false;
   double engaged_ = 0;   ///< greatest radius that can be in material

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "twin/process/milling/past_ways.h"
+#include "twin/process/milling/tool_side.h"
 
 namespace kerf {
 namespace {

@@ -31,15 +31,6 @@ double behind_start(double angle, double start, double sweep) {
 
 }  // namespace
 
-bool is_ball_end(const Cutter& cutter) {
-  const double radius = cutter.radius_mm();
-  for (const double part : {0.2, 0.5, 0.8, 0.99}) {
-    const double ball = radius * (1 - std::sqrt(1 - part * part));
-    if (std::abs(cutter.height_mm(part * radius) - ball) > 1e-9 * radius) return false;
-  }
-  return true;
-}
-
 double PastWays::Tool::reach_mm(double above_tip_mm) const {
   if (above_tip_mm < 0) return -1;
   if (is_flat || above_tip_mm >= high_mm) return radius_mm;
@@ -77,9 +68,9 @@ void PastWays::mount(const Cutter& cutter, int number) {
     const double part = static_cast<double>(k) / kReaches;
     tool.lift.push_back(cutter.height_mm(tool.radius_mm * (1 - std::max(1e-12, part * part))));
   }
+  tool.side = ToolSide::of(cutter);
   tool.high_mm = tool.lift.front();
   tool.is_flat = tool.high_mm <= 0;
-  tool.is_ball = !tool.is_flat && is_ball_end(cutter);
   for (std::size_t k = 0; k <= kReaches && !tool.is_flat; ++k) {
     const double part = static_cast<double>(k) / kReaches, high = part * part * tool.high_mm;
     double low = 0, wide = tool.radius_mm;
@@ -171,12 +162,10 @@ bool PastWays::line_covers(const Way& way, const Tool& tool, const Vec2& point, 
   const auto low_at = [&](double t) {
     return z + rise * t + tool.lift_mm(std::max(0.0, distance(t) - margin_mm));
   };
-  // A ball is lowest where its sphere, cut along the way, leans as the way does.
-  if (tool.is_ball) {
-    const double slope = rise / std::sqrt(length2);
-    const double lowest = nearest - slope * half / std::sqrt(1 + slope * slope);
-    return low_at(std::clamp(lowest, first, last)) <= z_mm + margin_mm;
-  }
+  const double length = std::sqrt(length2);
+  if (const std::optional<double> lowest =
+          tool.side.lowest_mm(rise / length, beside, half * length, margin_mm))
+    return low_at(std::clamp(nearest + *lowest / length, first, last)) <= z_mm + margin_mm;
   return golden_section(low_at, first, last, kSlopeSteps).least <= z_mm + margin_mm;
 }
 
@@ -216,7 +205,6 @@ const PastWays::Line& PastWays::line_of(std::uint32_t way) const {
   line.z = static_cast<double>(of.from[2]), line.rise = static_cast<double>(of.to[2]) - line.z;
   line.length2 = glm::dot(line.along, line.along), line.length = std::sqrt(line.length2);
   line.slope = line.length > 0 ? line.rise / line.length : 0;
-  line.steepness = std::hypot(1.0, line.slope);
   return line;
 }
 
@@ -238,12 +226,13 @@ double PastWays::line_height(std::uint32_t way, const Tool& tool, const Vec2& po
   const Vec2 beside = arm - nearest * along;
   const double half2 = radius * radius - glm::dot(beside, beside);
   if (half2 < 0) return kNotThere;
-  const double half = std::sqrt(half2) / line.length;
+  const double half_mm = std::sqrt(half2), half = half_mm / line.length;
   const double first = std::max(0.0, nearest - half), last = std::min(1.0, nearest + half);
   if (first > last) return kNotThere;
   if (tool.is_flat) return z + rise * (rise < 0 ? last : first);
-  if (tool.is_ball)
-    return surface(std::clamp(nearest - line.slope * half / line.steepness, first, last));
+  if (const std::optional<double> lowest =
+          tool.side.lowest_mm(line.slope, glm::length(beside), half_mm, margin_mm))
+    return surface(std::clamp(nearest + *lowest / line.length, first, last));
   return golden_section(surface, first, last, kHeightSteps).least;
 }
 

@@ -10,12 +10,10 @@
 #include "base/geometry.h"
 #include "base/growing_list.h"
 #include "stock/stock_model.h"
+#include "twin/process/milling/tool_side.h"
 #include "twin/process/milling/upright_arc.h"
 
 namespace kerf {
-
-/// A half sphere, to a billionth of its radius.
-bool is_ball_end(const Cutter& cutter);
 
 /// Moves of upright tools by their numbers, which a workpiece keeps for each of its cells
 /// (StockModel::keep_cut_ids). Several moves may have one number: of these the last kMostOfOne are
@@ -34,6 +32,8 @@ class PastWays {
   void add(const CutMove& move);
   /// How many there are, and of each of them.
   std::size_t tools() const { return tools_.size(); }
+  /// How wide the tool in the spindle is, so far above its tip.
+  double reach_mm(double above_tip_mm) const { return tools_[tool_].reach_mm(above_tip_mm); }
   double radius_mm(int tool) const { return tools_[static_cast<std::size_t>(tool)].radius_mm; }
   int number_of(int tool) const { return tools_[static_cast<std::size_t>(tool)].number; }
   const std::string& shape_of(int tool) const {
@@ -47,7 +47,7 @@ class PastWays {
   }
   bool knows(std::uint32_t number) const { return number < last_.size() && last_[number] != kNone; }
   /// A move of that number comes over the point with its tool as low as `z_mm`; or beside it by no
-  /// more than `margin_mm`. 10 ns; of a slope that is of neither a flat tool nor a ball 200.
+  /// more than `margin_mm`. 10 ns; of a slope that is of no flat tool, ball nor cone 200.
   bool covers(std::uint32_t number, const Vec2& point, double z_mm, double margin_mm) const;
   /// How low the moves of that number come over the point; infinite where they do not. 15 ns; of a
   /// slope that is of neither a flat tool nor a ball 200. As if the tool were wider by `margin_mm`.
@@ -60,12 +60,13 @@ class PastWays {
     std::string spec;
     int number = 0;
     double radius_mm = 0;
-    bool is_flat = false, is_ball = false;
+    bool is_flat = false;
     double high_mm = 0;          ///< where it is as wide as it gets
     std::vector<double> radius;  ///< over the height, 0 .. high_mm
     double reach_mm(double above_tip_mm) const;
     std::vector<double> lift;  ///< over the root of 1 - distance / radius
     double lift_mm(double distance_mm) const;
+    ToolSide side;
   };
   struct Arc {
     Vec2 center{0};
@@ -106,7 +107,7 @@ class PastWays {
     std::uint32_t way = kNone;
     Vec2 from{0}, along{0};
     double z = 0, rise = 0, length2 = 0, length = 0;
-    double slope = 0, steepness = 1;  ///< rise for each mm, and the hypotenuse of that and 1
+    double slope = 0;  ///< rise for each mm
   };
   static constexpr std::size_t kLines = 128;
   const Line& line_of(std::uint32_t way) const;

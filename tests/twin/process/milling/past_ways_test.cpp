@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "stock/cutter/shape_spec.h"
+#include "twin/process/milling/tool_side.h"
 
 namespace kerf {
 namespace {
@@ -62,6 +65,35 @@ TEST_F(PastWaysTest, MovesOfOneNumberAreAskedWhateverToolMadeThem) {
   // At Y-2 only the ball has been: -1 + 3 - sqrt(9 - 4).
   EXPECT_NEAR(ways_.height_mm(7, {5, -2}), 2 - std::sqrt(5.0), 1e-4);
   EXPECT_NEAR(ways_.height_mm(7, {5, 1}), -1, 1e-6);
+}
+
+/// Against a hundred thousand places of the way: balls, cones with and without a flat end, gentle
+/// and steeper than the cone; and what is no such tool is none.
+TEST(ToolSide, IsLowestWhereNoOtherPlaceIsLower) {
+  for (const char* const shape : {"ball:6", "vee:6:90", "vee:6:60", "drill:6:118", "vee:6:90:1"}) {
+    const Cutter cutter = parse_shape(shape).value();
+    const ToolSide side = ToolSide::of(cutter);
+    const double radius = cutter.radius_mm();
+    for (const double rise : {-2.5, -0.4, -0.01, 0.02, 0.3, 0.9, 3.0}) {
+      for (const double beside : {0.0, 0.1, 0.7, 2.2}) {
+        const double half = std::sqrt(radius * radius - beside * beside);
+        const auto height = [&](double along) {
+          const double distance = std::min(std::hypot(along, beside), radius * (1 - 1e-12));
+          return rise * along + cutter.height_mm(distance);
+        };
+        double least = height(-half);
+        constexpr int kPlaces = 100'000;
+        for (int n = 1; n <= kPlaces; ++n)
+          least = std::min(least, height(half * (2.0 * n / kPlaces - 1)));
+        const std::optional<double> lowest = side.lowest_mm(rise, beside, half, 0);
+        ASSERT_TRUE(lowest) << shape;
+        EXPECT_NEAR(height(std::clamp(*lowest, -half, half)), least, 3e-4)
+            << shape << ' ' << rise << ' ' << beside;
+      }
+    }
+  }
+  for (const char* const shape : {"bull:6:1", "taper:6:10:1", "flat:6"})
+    EXPECT_FALSE(ToolSide::of(parse_shape(shape).value()).lowest_mm(0.5, 0, 3, 0)) << shape;
 }
 
 }  // namespace
