@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/block_copy.h"
 #include "base/portable_math.h"
 #include "base/translate.h"
 #include "interp_bridge/timing/lookahead.h"
@@ -58,7 +59,8 @@ bool flat_arc(const Motion& m, Vec3& middle) {
 }
 
 /// Goes back where `m` came from: the way out of a rigid tap.
-bool returns(const Motion& m, const Motion& next) {
+template <class Step>
+bool returns(const Step& m, const Motion& next) {
   return next.from_mm == m.to_mm && next.to_mm == m.from_mm;
 }
 
@@ -122,7 +124,33 @@ struct TrajectoryPlanner::Impl final : MotionPlanSink {
   std::optional<Segment> feed_waits;
   Motion chain_motion;  ///< its first
   bool chain_keeps_start = false;
-  Motion last;  ///< where the machine stands and what is switched on
+  /// Where the machine stands and what is switched on.
+  struct Stand {
+    MotionKind kind = MotionKind::kTraverse;
+    SpindleState spindle = SpindleState::kStopped;
+    bool flood = false, mist = false;
+    SourceRef source;
+    Vec3 from_mm{0}, to_mm{0};
+    std::array<double, 3> to_abc_deg{};
+    Vec3 to_uvw_mm{0};
+    double spindle_rpm = 0;
+    SurfaceSpeed surface;
+
+    void take(const Motion& m) {
+      kind = m.kind;
+      spindle = m.spindle;
+      flood = m.flood;
+      mist = m.mist;
+      source = m.source;
+      from_mm = m.from_mm;
+      to_mm = m.to_mm;
+      to_abc_deg = m.to_abc_deg;
+      to_uvw_mm = m.to_uvw_mm;
+      spindle_rpm = m.spindle_rpm;
+      surface = m.surface;
+    }
+  };
+  Stand last;
   bool begun = false;
   std::uint32_t queued = 0;  ///< pieces since the machine stood
   double stood_s = 0;        ///< when the first of them was queued
@@ -367,7 +395,7 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
       move(m);
       break;
   }
-  last = m;
+  last.take(m);
   begun = true;
 }
 
@@ -388,7 +416,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   if (!m.start_known || !moves || !fed) {
     // The machine is simply there afterwards; a move of no length does not even stop it.
     if (moves || !m.start_known) halt();
-    schedule.open_motion(timing, 0);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 0);
     return;
   }
   wait_for_spindle(m);
@@ -403,7 +431,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
       thread(m, timing, way, timing.programmed_mm_per_min / 60.0);
       return;
     }
-    schedule.open_motion(timing, 1);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 1);
     straight(m, way, allowed);
     return;
   }
@@ -412,7 +440,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
   Vec3 middle;
   if (!segment.extra && flat_arc(m, middle)) {
-    schedule.open_motion(timing, 2);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 2);
     add_to_chain(m.from_mm, middle, m);
     add_to_chain(middle, m.to_mm, m);
     return;
@@ -424,7 +452,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   } else {
     feed_rpm = -1;
   }
-  schedule.open_motion(timing, 1);
+  schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 1);
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
@@ -536,7 +564,7 @@ void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, con
   const std::uint64_t piece = add_piece(glm::length(to - from));
   if (chain.empty()) {
     chain.begin(from, speed, blend, piece);
-    chain_motion = m;
+    copy_block(chain_motion, m);
     chain_motion.kind = MotionKind::kFeed;
     chain_motion.from_mm = from;
     chain_keeps_start = m.chain_end == ChainEnd::kOutputs;

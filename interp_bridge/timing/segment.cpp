@@ -1,6 +1,7 @@
 #include "interp_bridge/timing/segment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -82,6 +83,14 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm, const
     time2 = std::max(time2, way * rates.inertia[i]);
   }
   const double linear = glm::length(delta_mm);
+  constexpr std::array<double, 3> kStill{};
+  if (linear > 0 && extra.abc_deg == kStill && extra.uvw_mm == Vec3{0}) {
+    result.tip = result.linear = true;
+    result.length = linear;
+    result.speed = time > 0 ? std::min(linear / time, kUnlimited) : kUnlimited;
+    result.accel = time2 > 0 ? std::min(linear / time2, kUnlimited) : kUnlimited;
+    return result;
+  }
   const auto add = [&](double way, std::size_t axis, double& square) {
     if (way == 0) return;
     square += way * way;
