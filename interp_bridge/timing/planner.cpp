@@ -13,6 +13,7 @@
 #include "base/block_copy.h"
 #include "base/portable_math.h"
 #include "base/translate.h"
+#include "base/triple.h"
 #include "interp_bridge/timing/lookahead.h"
 #include "interp_bridge/timing/merge.h"
 #include "interp_bridge/timing/schedule.h"
@@ -308,9 +309,10 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
                                         : !last.surface.on() && m.spindle_rpm == last.spindle_rpm;
   const bool switched = m.spindle != last.spindle || (turns && !as_before);
   // The tip of another tool is elsewhere, which is no command.
-  const bool offset = m.kind != MotionKind::kToolChange &&
-                      (m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
-                       m.from_uvw_mm != last.to_uvw_mm);
+  const bool offset =
+      m.kind != MotionKind::kToolChange &&
+      !(is_equal(m.from_mm, last.to_mm) && is_equal(m.from_abc_deg, last.to_abc_deg) &&
+        is_equal(m.from_uvw_mm, last.to_uvw_mm));
   int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
   // Switching coolant off is two commands, one for each kind.
   if ((last.flood && !m.flood) || (last.mist && !m.mist)) coolant = 2;
@@ -507,8 +509,8 @@ void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing
                                      const StraightRates& way, double speed) {
   const bool behind = begun && last.kind == MotionKind::kThread;
   const bool retracts = behind && returns(last, m);
-  thread_waits = {m,         timing,    way.length, std::min(speed, way.speed),
-                  way.accel, way.speed, retracts,   behind && m.halts == 0};
+  thread_waits = {m,           timing,    way.length, std::min(speed, way.speed),
+                  way.accel(), way.speed, retracts,   behind && m.halts == 0};
 }
 
 /// Follows the spindle from its index pulse on: half of v / a late, as it has to speed up, and
