@@ -110,6 +110,8 @@ constexpr std::array<double, 19> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1
 
 /// Nobody means a point farther off, and products of such numbers stay finite.
 constexpr double kLargestCoordinate = 1e15;
+/// X Y Z A B C of a straight move.
+constexpr std::size_t kStraightCoordinates = 6;
 
 bool is_name_start(char c) { return (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name_part(char c) { return is_name_start(c) || is_digit(c) || c == '.'; }
@@ -307,6 +309,18 @@ const char* parse_arguments(const char* spec, Cursor& cursor, CanonicalCommand& 
   return cursor.done() ? nullptr : tr("more arguments than the command has");
 }
 
+/// Most records are such moves.
+bool is_straight_of_coordinates(const CanonicalCommand& command) {
+  const bool straight = command.name == CanonicalName::kStraightFeed ||
+                        command.name == CanonicalName::kStraightTraverse;
+  if (!straight || command.argument_count < kStraightCoordinates) return false;
+  bool fits = true;
+  for (std::size_t i = 0; i < command.argument_count; ++i) {
+    fits &= std::abs(command.arguments[i]) <= kLargestCoordinate;
+  }
+  return fits;
+}
+
 bool argument_fits(char letter, double value) {
   const bool whole = value == std::floor(value);
   switch (letter) {
@@ -472,6 +486,7 @@ std::string_view canonical_spelling(CanonicalName name) {
 }
 
 bool canonical_arguments_fit(const CanonicalCommand& command) {
+  if (is_straight_of_coordinates(command)) return true;
   const double* const values = command.arguments.data();
   std::size_t at = 0;
   bool optional = false;

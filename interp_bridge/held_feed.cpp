@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "base/triple.h"
 
 namespace kerf {
 
 bool is_held_back(const Motion& m) {
-  if (m.from_abc_deg != m.to_abc_deg || m.from_uvw_mm != m.to_uvw_mm) return false;
+  if (!is_equal(m.from_abc_deg, m.to_abc_deg) || !is_equal(m.from_uvw_mm, m.to_uvw_mm))
+    return false;
   if (m.kind == MotionKind::kFeed) return m.start_known && m.from_mm != m.to_mm;
   if (m.kind != MotionKind::kArc || m.path_mode != PathMode::kContinuous) return false;
   if (std::abs(m.arc.axis.z) < 0.9999) return false;

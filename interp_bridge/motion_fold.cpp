@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/block_copy.h"
 #include "interp_bridge/motion_fold_math.h"
 
 namespace kerf {
@@ -11,7 +12,8 @@ namespace kerf {
 MotionFold::MotionFold(std::vector<int> tool_by_index) : tool_by_index_(std::move(tool_by_index)) {}
 
 Motion& MotionFold::append(MotionKind kind, SourceRef source, std::vector<Motion>& out) {
-  Motion& motion = out.emplace_back();
+  static const Motion kFresh;
+  Motion& motion = append_block(out, kFresh);
   motion.kind = kind;
   motion.source = source;
   motion.tool = tool_;

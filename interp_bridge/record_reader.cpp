@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/block_copy.h"
 #include "base/translate.h"
 
 namespace kerf {
@@ -148,7 +149,7 @@ bool RecordReader::take_command(const records::Head& head, const char* payload) 
     return refuse(tr("a command with too many numbers"));
   const auto given = static_cast<std::uint8_t>(head.count);
   command_.argument_count = full_count(command_.name, given);
-  std::memcpy(command_.arguments.data(), payload, std::size_t{8} * given);
+  copy_bytes(command_.arguments.data(), payload, std::size_t{8} * given);
   for (std::size_t i = given; i < command_.argument_count; ++i) command_.arguments[i] = 0;
   if (!canonical_arguments_fit(command_) || !tool_fits(command_)) {
     return refuse(tr("a command whose numbers do not fit"));

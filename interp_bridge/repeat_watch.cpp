@@ -49,9 +49,11 @@ void RepeatWatch::take(SourceRef source, std::span<const Motion> motions) {
   same_line_ = source == before ? same_line_ + 1 : 0;
   loops_ |= same_line_ > kMostOfALine || (source.file == before.file && source.line < before.line);
   bool fresh = !loops_;
-  for (const Motion& motion : motions) {
-    machine_s_ += machine_time_s(motion);
-    fresh |= loops_ && is_new(source, motion);
+  if (loops_) {
+    for (const Motion& motion : motions) {
+      machine_s_ += machine_time_s(motion);
+      fresh |= is_new(source, motion);
+    }
   }
   ++commands_;
   if (!fresh) return;

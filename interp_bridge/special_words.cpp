@@ -38,7 +38,10 @@ bool any(Bytes c) {
 
 /// Letters that may begin a special word. Of the bytes behind them c1 is the next, and so on.
 Bytes may_begin(const char* p) {
-  const Bytes c0 = bytes_at(p) | 0x20, c1 = bytes_at(p + 1), c2 = bytes_at(p + 2);
+  const Bytes c0 = bytes_at(p) | 0x20;
+  const Bytes begins = Bytes((c0 == 'g') | (c0 == 'm'));
+  if (!any(begins)) return begins;
+  const Bytes c1 = bytes_at(p + 1), c2 = bytes_at(p + 2);
   const Bytes c3 = bytes_at(p + 3), c4 = bytes_at(p + 4);
   const Bytes letter3 = letters(c3);
   // The number has ended there, and another word begins.

@@ -12,10 +12,6 @@ UnknownSum UnknownSum::of(int number, bool doubtful) {
   return sum;
 }
 
-bool UnknownSum::operator==(const UnknownSum& other) const {
-  return count_ >= 0 && count_ == other.count_ && terms_ == other.terms_;
-}
-
 UnknownSum UnknownSum::plus(const UnknownSum& other, int sign) const {
   if (other.count_ == 0) return *this;
   UnknownSum sum = *this;
@@ -38,7 +34,7 @@ UnknownSum UnknownSum::plus(const UnknownSum& other, int sign) const {
   return sum;
 }
 
-bool UnknownSum::is_doubtful() const {
+bool UnknownSum::has_doubtful_term() const {
   return count_ < 0 || std::any_of(terms_.begin(), terms_.end(),
                                    [](std::int32_t term) { return std::abs(term) % 2 == 1; });
 }

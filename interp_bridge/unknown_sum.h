@@ -17,14 +17,18 @@ class UnknownSum {
   static UnknownSum of(int number, bool doubtful);
 
   /// Sums of too many amounts equal nothing, not even themselves.
-  bool operator==(const UnknownSum& other) const;
+  bool operator==(const UnknownSum& other) const {
+    if (count_ != other.count_ || count_ < 0) return false;
+    return count_ == 0 || terms_ == other.terms_;
+  }
   bool operator!=(const UnknownSum& other) const { return !(*this == other); }
   UnknownSum operator+(const UnknownSum& other) const { return plus(other, 1); }
   UnknownSum operator-(const UnknownSum& other) const { return plus(other, -1); }
   /// One of its amounts is, or they are too many.
-  bool is_doubtful() const;
+  bool is_doubtful() const { return count_ != 0 && has_doubtful_term(); }
 
  private:
+  bool has_doubtful_term() const;
   static constexpr int kMost = 4;
   UnknownSum plus(const UnknownSum& other, int sign) const;
 

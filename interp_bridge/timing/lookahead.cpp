@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/block_copy.h"
 #include "interp_bridge/timing/corner.h"
 
 namespace kerf {
@@ -26,29 +27,29 @@ Lookahead::Lookahead(const AxisRates& rates, Schedule& schedule)
       queue_(capacity_for(rates.depth)),
       limits_(capacity_for(rates.depth)) {}
 
-void Lookahead::add(Segment segment) {
+void Lookahead::add(Segment& segment) {
   clamp_to_cycle(segment, rates_.cycle_s);
   if (!queue_.empty()) {
     Segment& previous = queue_.back().segment;
-    Segment blend;
+    Segment& blend = blend_;
     switch (join_corner(rates_, previous, segment, blend)) {
       case CornerKind::kPlain:
         finalize_back(true);
         break;
       case CornerKind::kBlend:
         finalize_back(true);
-        queue_.push().segment = blend;
+        copy_block(queue_.push().segment, blend);
         finalize_back(true);
         break;
       case CornerKind::kSwallowed:
         blend.first_piece = previous.first_piece;
         blend.piece_count = previous.piece_count;
-        previous = blend;
+        copy_block(previous, blend);
         finalize_back(true);
         break;
     }
   }
-  queue_.push().segment = segment;
+  copy_block(queue_.push().segment, segment);
   const std::uint64_t depth = static_cast<std::uint64_t>(rates_.depth);
   while (queue_.size() > depth + 1) {
     // The youngest may still be shortened to half by its own corner, and must stop there.

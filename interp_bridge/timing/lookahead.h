@@ -22,8 +22,9 @@ class Lookahead {
  public:
   Lookahead(const AxisRates& rates, Schedule& schedule);
 
-  /// Appends a segment, with what its corner to the one before becomes.
-  void add(Segment segment);
+  /// Appends a segment, with what its corner to the one before becomes. What is left of `segment`
+  /// is of no use.
+  void add(Segment& segment);
   bool empty() const { return queue_.empty(); }
   /// When the machine stands, on the schedule's clock, if nothing more is added.
   double end_s() const;
@@ -71,6 +72,7 @@ class Lookahead {
   const AxisRates& rates_;
   Schedule& schedule_;
   Ring<Queued> queue_;
+  Segment blend_;  ///< of join_corner()
   Ring<Limit> limits_;
   double retired_sum_ = 0;
   double speed_ = 0;  ///< at the end of the last retired segment

@@ -2,6 +2,7 @@
 // ("naive CAM detector").
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,13 +27,15 @@ class MergeChain {
   std::uint32_t piece_count() const { return static_cast<std::uint32_t>(ends_.size()); }
 
   void begin(const Vec3& start, double speed, double blend_tolerance_mm, std::uint64_t first_piece);
-  void append(const Vec3& end) { ends_.push_back(end); }
+  void append(const Vec3& end);
   /// May a feed to `end` join? O(length of the chain).
   bool links(const Vec3& end, double merge_tolerance_mm) const;
   void clear() { ends_.clear(); }
 
  private:
   std::vector<Vec3> ends_;
+  /// The same from start_ on, with one more behind the last.
+  std::array<double, kMost + 1> out_x_{}, out_y_{}, out_z_{};
   Vec3 start_{0};
   double speed_ = 0;
   double blend_tolerance_mm_ = 0;

@@ -10,8 +10,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/block_copy.h"
 #include "base/portable_math.h"
 #include "base/translate.h"
+#include "base/triple.h"
 #include "interp_bridge/timing/lookahead.h"
 #include "interp_bridge/timing/merge.h"
 #include "interp_bridge/timing/schedule.h"
@@ -58,7 +60,8 @@ bool flat_arc(const Motion& m, Vec3& middle) {
 }
 
 /// Goes back where `m` came from: the way out of a rigid tap.
-bool returns(const Motion& m, const Motion& next) {
+template <class Step>
+bool returns(const Step& m, const Motion& next) {
   return next.from_mm == m.to_mm && next.to_mm == m.from_mm;
 }
 
@@ -122,7 +125,33 @@ struct TrajectoryPlanner::Impl final : MotionPlanSink {
   std::optional<Segment> feed_waits;
   Motion chain_motion;  ///< its first
   bool chain_keeps_start = false;
-  Motion last;  ///< where the machine stands and what is switched on
+  /// Where the machine stands and what is switched on.
+  struct Stand {
+    MotionKind kind = MotionKind::kTraverse;
+    SpindleState spindle = SpindleState::kStopped;
+    bool flood = false, mist = false;
+    SourceRef source;
+    Vec3 from_mm{0}, to_mm{0};
+    std::array<double, 3> to_abc_deg{};
+    Vec3 to_uvw_mm{0};
+    double spindle_rpm = 0;
+    SurfaceSpeed surface;
+
+    void take(const Motion& m) {
+      kind = m.kind;
+      spindle = m.spindle;
+      flood = m.flood;
+      mist = m.mist;
+      source = m.source;
+      from_mm = m.from_mm;
+      to_mm = m.to_mm;
+      to_abc_deg = m.to_abc_deg;
+      to_uvw_mm = m.to_uvw_mm;
+      spindle_rpm = m.spindle_rpm;
+      surface = m.surface;
+    }
+  };
+  Stand last;
   bool begun = false;
   std::uint32_t queued = 0;  ///< pieces since the machine stood
   double stood_s = 0;        ///< when the first of them was queued
@@ -280,9 +309,10 @@ void TrajectoryPlanner::Impl::command_waits(const Motion& m) {
                                         : !last.surface.on() && m.spindle_rpm == last.spindle_rpm;
   const bool switched = m.spindle != last.spindle || (turns && !as_before);
   // The tip of another tool is elsewhere, which is no command.
-  const bool offset = m.kind != MotionKind::kToolChange &&
-                      (m.from_mm != last.to_mm || m.from_abc_deg != last.to_abc_deg ||
-                       m.from_uvw_mm != last.to_uvw_mm);
+  const bool offset =
+      m.kind != MotionKind::kToolChange &&
+      !(is_equal(m.from_mm, last.to_mm) && is_equal(m.from_abc_deg, last.to_abc_deg) &&
+        is_equal(m.from_uvw_mm, last.to_uvw_mm));
   int coolant = (m.flood != last.flood ? 1 : 0) + (m.mist != last.mist ? 1 : 0);
   // Switching coolant off is two commands, one for each kind.
   if ((last.flood && !m.flood) || (last.mist && !m.mist)) coolant = 2;
@@ -367,7 +397,7 @@ void TrajectoryPlanner::Impl::push(const Motion& m) {
       move(m);
       break;
   }
-  last = m;
+  last.take(m);
   begun = true;
 }
 
@@ -388,7 +418,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   if (!m.start_known || !moves || !fed) {
     // The machine is simply there afterwards; a move of no length does not even stop it.
     if (moves || !m.start_known) halt();
-    schedule.open_motion(timing, 0);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 0);
     return;
   }
   wait_for_spindle(m);
@@ -403,7 +433,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
       thread(m, timing, way, timing.programmed_mm_per_min / 60.0);
       return;
     }
-    schedule.open_motion(timing, 1);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 1);
     straight(m, way, allowed);
     return;
   }
@@ -412,7 +442,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   timing.allowed_mm_per_min = std::min(segment.max_speed, rates.linear_cap) * 60.0;
   Vec3 middle;
   if (!segment.extra && flat_arc(m, middle)) {
-    schedule.open_motion(timing, 2);
+    schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 2);
     add_to_chain(m.from_mm, middle, m);
     add_to_chain(middle, m.to_mm, m);
     return;
@@ -424,7 +454,7 @@ void TrajectoryPlanner::Impl::move(const Motion& m) {
   } else {
     feed_rpm = -1;
   }
-  schedule.open_motion(timing, 1);
+  schedule.open_motion(timing.programmed_mm_per_min, timing.allowed_mm_per_min, 1);
   segment.end = end_of(m.path_mode);
   segment.tolerance_mm = static_cast<double>(m.blend_tolerance_mm);
   segment.piece_count = 1;
@@ -479,8 +509,8 @@ void TrajectoryPlanner::Impl::thread(const Motion& m, const MotionTiming& timing
                                      const StraightRates& way, double speed) {
   const bool behind = begun && last.kind == MotionKind::kThread;
   const bool retracts = behind && returns(last, m);
-  thread_waits = {m,         timing,    way.length, std::min(speed, way.speed),
-                  way.accel, way.speed, retracts,   behind && m.halts == 0};
+  thread_waits = {m,           timing,    way.length, std::min(speed, way.speed),
+                  way.accel(), way.speed, retracts,   behind && m.halts == 0};
 }
 
 /// Follows the spindle from its index pulse on: half of v / a late, as it has to speed up, and
@@ -536,7 +566,7 @@ void TrajectoryPlanner::Impl::add_to_chain(const Vec3& from, const Vec3& to, con
   const std::uint64_t piece = add_piece(glm::length(to - from));
   if (chain.empty()) {
     chain.begin(from, speed, blend, piece);
-    chain_motion = m;
+    copy_block(chain_motion, m);
     chain_motion.kind = MotionKind::kFeed;
     chain_motion.from_mm = from;
     chain_keeps_start = m.chain_end == ChainEnd::kOutputs;

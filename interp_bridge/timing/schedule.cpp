@@ -19,6 +19,11 @@ constexpr double kEven_s = 0.0005;
 /// Room for what the look-ahead usually holds; grows where many short moves are merged.
 constexpr std::size_t kFirstCapacity = 1024;
 
+/// std::clamp() of values: that of references goes through memory.
+double within(double value, double least, double most) {
+  return std::min(std::max(value, least), most);
+}
+
 /// `r` turned about the unit vector `axis`, to which it is normal.
 Vec3 turned(const Vec3& r, const Vec3& axis, double angle) {
   return portable::cos(angle) * r + portable::sin(angle) * glm::cross(axis, r);
@@ -29,10 +34,15 @@ Vec3 turned(const Vec3& r, const Vec3& axis, double angle) {
 Schedule::Schedule(MotionPlanSink& sink, bool with_path)
     : sink_(sink), with_path_(with_path), pending_(kFirstCapacity), pieces_(kFirstCapacity) {}
 
-void Schedule::open_motion(const MotionTiming& timing, std::uint32_t pieces) {
+void Schedule::open_motion(double programmed_mm_per_min, double allowed_mm_per_min,
+                           std::uint32_t pieces) {
   Pending& pending = pending_.push();
-  pending.timing = timing;
-  pending.timing.index = next_index_++;
+  MotionTiming& timing = pending.timing;
+  timing.index = next_index_++;
+  timing.start_s = timing.duration_s = timing.peak_mm_per_min = 0;
+  timing.programmed_mm_per_min = programmed_mm_per_min;
+  timing.allowed_mm_per_min = allowed_mm_per_min;
+  timing.way = {};
   pending.pieces_left = pieces;
   pending.started = false;
   pending.middles = 0;
@@ -85,8 +95,8 @@ void Schedule::close_piece() {
 void Schedule::report_ready() {
   while (!pending_.empty() && pending_.front().pieces_left == 0) {
     Pending& pending = pending_.front();
-    if (!pending.started) pending.timing.start_s = clock_s_;
-    MotionTiming timing = pending.timing;
+    MotionTiming& timing = pending.timing;
+    if (!pending.started) timing.start_s = clock_s_;
     timing.duration_s = std::max(timing.duration_s, 0.0);
     if (pending.middles == 1 && timing.duration_s > 0) {
       const double in = pending.in_s / timing.duration_s;
@@ -98,7 +108,7 @@ void Schedule::report_ready() {
       timing.way = {};
     }
     pending_.pop_front();
-    sink_.timed(timing);
+    sink_.timed(timing);  // nothing is pushed meanwhile
   }
 }
 
@@ -210,8 +220,8 @@ void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedPro
     const double share = whole > 0 ? piece.length_mm / whole : 1.0;
     const double ends = last ? 1.0 : done + share;
     // Between its ends the piece is on so much of the segment's own way.
-    const double from = std::clamp((done - cut_from) / left, alone.from, alone.to);
-    const double to = last ? alone.to : std::clamp((ends - cut_from) / left, from, alone.to);
+    const double from = within((done - cut_from) / left, alone.from, alone.to);
+    const double to = last ? alone.to : within((ends - cut_from) / left, from, alone.to);
     const double run_to = last ? 1.0 : middle.time_of(to);
     const double piece_s = moving_s * (run_to - run) + (last ? seconds - moving_s : 0);
     Pending& pending = add_time(piece.motion, piece_s, profile.peak_speed);
@@ -223,8 +233,8 @@ void Schedule::run_pieces(const Segment& segment, double seconds, const SpeedPro
     if (ends > done) {
       const double in = (cut_from + left * from - done) / (ends - done);
       const double out = (ends - cut_from - left * to) / (ends - done);
-      way.in_way = static_cast<float>(std::clamp(in, 0.0, 1.0));
-      way.out_way = static_cast<float>(std::clamp(out, 0.0, 1.0));
+      way.in_way = static_cast<float>(within(in, 0.0, 1.0));
+      way.out_way = static_cast<float>(within(out, 0.0, 1.0));
     }
     if (last) {
       pending.out_s += profile.rest_s + corner_s;

@@ -23,7 +23,7 @@ class Schedule {
   void pause(double seconds) { clock_s_ += seconds; }
 
   /// A motion of `pieces` pieces, to be added right after. 0: it takes no time.
-  void open_motion(const MotionTiming& timing, std::uint32_t pieces);
+  void open_motion(double programmed_mm_per_min, double allowed_mm_per_min, std::uint32_t pieces);
   std::uint64_t add_piece(double length_mm);
   /// A motion done by itself while nothing is queued. speed: its peak.
   void alone(const Motion& motion, MotionTiming timing, double seconds, double speed);

@@ -1,10 +1,12 @@
 #include "interp_bridge/timing/segment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "base/portable_math.h"
+#include "base/triple.h"
 
 namespace kerf {
 namespace {
@@ -82,6 +84,13 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm, const
     time2 = std::max(time2, way * rates.inertia[i]);
   }
   const double linear = glm::length(delta_mm);
+  if (linear > 0 && is_equal(extra.abc_deg, {}) && is_equal(extra.uvw_mm, Vec3{0})) {
+    result.tip = result.linear = true;
+    result.length = linear;
+    result.speed = time > 0 ? std::min(linear / time, kUnlimited) : kUnlimited;
+    result.accel_s2 = time2;
+    return result;
+  }
   const auto add = [&](double way, std::size_t axis, double& square) {
     if (way == 0) return;
     square += way * way;
@@ -99,7 +108,7 @@ StraightRates straight_rates(const AxisRates& rates, const Vec3& delta_mm, const
   result.extra = turned > 0 || slid > 0;
   result.length = result.tip ? linear : std::sqrt(slid > 0 ? slid : turned);
   result.speed = time > 0 ? std::min(result.length / time, kUnlimited) : kUnlimited;
-  result.accel = time2 > 0 ? std::min(result.length / time2, kUnlimited) : kUnlimited;
+  result.accel_s2 = time2;
   return result;
 }
 
@@ -113,7 +122,7 @@ Segment make_line(const Vec3& from, const Vec3& to, const StraightRates& straigh
   segment.nominal_mm = straight.length;
   segment.max_speed = straight.speed;
   segment.request = std::min(speed, straight.speed);
-  segment.max_accel = straight.accel;
+  segment.max_accel = straight.accel();
   if (straight.tip) {
     segment.tangent_from = (to - from) / straight.length;
   } else {
@@ -151,7 +160,7 @@ Segment make_arc(const AxisRates& rates, const Motion& motion, double speed) {
   const double across = std::sqrt(accel * kAcrossShare * segment.radius_mm);
   const double planar_speed = std::min(across, least_across(motion.arc.axis, rates.velocity));
   const double time = std::max(planar / planar_speed, chord.length / chord.speed);
-  const double time2 = std::max(planar / accel, chord.length / chord.accel);
+  const double time2 = std::max(planar / accel, chord.length / chord.accel());
   segment.max_speed = segment.length_mm / time;
   segment.max_accel = segment.length_mm / time2;
   segment.request = std::min(speed, segment.max_speed);

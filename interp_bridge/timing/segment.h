@@ -138,7 +138,10 @@ ExtraWay extra_way(const Motion& motion);
 struct StraightRates {
   double length = 0;
   double speed = 0;
-  double accel = 0;
+  double accel_s2 = 0;  ///< seconds squared that the slowest axis takes; 0: none has a limit
+  double accel() const {
+    return accel_s2 > 0 ? std::min(length / accel_s2, kUnlimited) : kUnlimited;
+  }
   bool tip = false;     ///< X, Y or Z move
   bool linear = false;  ///< they, or U, V, W
   bool extra = false;   ///< A, B, C, U, V or W move

@@ -19,10 +19,11 @@ namespace {
 /// The cells of one row that lie within a body's outline, as up to two runs [first, last).
 struct RowRuns {
   int count = 0;
-  std::array<std::pair<int, int>, 2> runs;
+  std::array<std::pair<int, int>, 2> runs{};
   void add(int first, int last) {
     if (first < last) runs[static_cast<std::size_t>(count++)] = {first, last};
   }
+  bool operator==(const RowRuns&) const = default;
 };
 
 /// Cells of a row of n, centred at x0 + (i + 0.5) * edge, with from <= centre <= to.
@@ -60,20 +61,29 @@ RowRuns runs_of(const BlankBody& body, const TileGrid& grid, double y) {
   return out;
 }
 
+/// `runs`: one of each body.
+void fill_row(std::vector<float>& row, const Blank& blank, const std::vector<RowRuns>& runs,
+              float floor_mm) {
+  std::fill(row.begin(), row.end(), floor_mm);
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    const float top = static_cast<float>(blank.bodies[b].bounds_mm.max.z);
+    for (int r = 0; r < runs[b].count; ++r) {
+      const auto [first, last] = runs[b].runs[static_cast<std::size_t>(r)];
+      for (int i = first; i < last; ++i)
+        row[static_cast<std::size_t>(i)] = std::max(row[static_cast<std::size_t>(i)], top);
+    }
+  }
+}
+
 void fill_blank(TileGrid& grid, const Blank& blank) {
   std::vector<float> row(static_cast<std::size_t>(grid.nx()));
+  std::vector<RowRuns> now, before;
   for (int j = 0; j < grid.ny(); ++j) {
     const double y = grid.bounds_mm().min.y + (j + 0.5) * grid.cell_y_mm();
-    std::fill(row.begin(), row.end(), grid.floor_mm());
-    for (const BlankBody& body : blank.bodies) {
-      const float top = static_cast<float>(body.bounds_mm.max.z);
-      const RowRuns runs = runs_of(body, grid, y);
-      for (int r = 0; r < runs.count; ++r) {
-        const auto [first, last] = runs.runs[static_cast<std::size_t>(r)];
-        for (int i = first; i < last; ++i)
-          row[static_cast<std::size_t>(i)] = std::max(row[static_cast<std::size_t>(i)], top);
-      }
-    }
+    now.clear();
+    for (const BlankBody& body : blank.bodies) now.push_back(runs_of(body, grid, y));
+    if (j == 0 || now != before) fill_row(row, blank, now, grid.floor_mm());
+    now.swap(before);
     grid.set_row(j, row.data());
   }
 }
@@ -142,14 +152,20 @@ Result<TileGrid> make_blank_grid(const Blank& blank, double cell_mm, std::size_t
 ColumnGrid columns_of(const TileGrid& grid) { return {grid.bounds_mm(), grid.nx(), grid.ny()}; }
 
 double volume_of(const TileGrid& grid) {
-  std::vector<float> row(static_cast<std::size_t>(grid.nx()));
+  const auto width = static_cast<std::size_t>(grid.nx());
+  std::vector<float> rows(kBlockY * width);
   const double floor = static_cast<double>(grid.floor_mm());
   double sum = 0;
-  for (int j = 0; j < grid.ny(); ++j) {
-    grid.copy_row(j, row.data());
-    double row_sum = 0;
-    for (const float height : row) row_sum += static_cast<double>(height) - floor;
-    sum += row_sum;
+  for (int j = 0; j < grid.ny(); j += kBlockY) {
+    grid.copy_rows(j, rows.data());
+    // Each row in its order, as if alone; several at once, as an addition waits for the one before.
+    std::array<double, kBlockY> sums{};
+    for (std::size_t i = 0; i < width; ++i) {
+      for (std::size_t y = 0; y < sums.size(); ++y)
+        sums[y] += static_cast<double>(rows[y * width + i]) - floor;
+    }
+    for (int y = 0; y < std::min(kBlockY, grid.ny() - j); ++y)
+      sum += sums[static_cast<std::size_t>(y)];
   }
   return sum * grid.cell_x_mm() * grid.cell_y_mm();
 }
@@ -164,11 +180,13 @@ GridHash hash_of(const TileGrid& grid) {
   const std::int32_t counts[2] = {grid.nx(), grid.ny()};
   XXH3_128bits_update(&state, frame, sizeof frame);
   XXH3_128bits_update(&state, counts, sizeof counts);
-  std::vector<float> row(static_cast<std::size_t>(grid.nx()));
-  for (int j = 0; j < grid.ny(); ++j) {
-    grid.copy_row(j, row.data());
-    for (float& height : row) height += 0.0f;  // -0 and 0 are the same height
-    XXH3_128bits_update(&state, row.data(), row.size() * sizeof(float));
+  const auto width = static_cast<std::size_t>(grid.nx());
+  std::vector<float> rows(kBlockY * width);
+  for (int j = 0; j < grid.ny(); j += kBlockY) {
+    grid.copy_rows(j, rows.data());
+    const std::size_t count = width * static_cast<std::size_t>(std::min(kBlockY, grid.ny() - j));
+    for (std::size_t i = 0; i < count; ++i) rows[i] += 0.0f;  // -0 and 0 are the same height
+    XXH3_128bits_update(&state, rows.data(), count * sizeof(float));
   }
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   return {hash.high64, hash.low64};

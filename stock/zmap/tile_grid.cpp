@@ -166,14 +166,29 @@ TileGrid::TileGrid(const Box& bounds_mm, int nx, int ny, bool keeps_cut_ids)
   cells_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     float* const cells = arena_->first(i);
-    std::fill_n(cells, kTileFloats, std::numeric_limits<float>::lowest());
+    const auto tiles_x = static_cast<std::size_t>(tiles_x_);
+    const bool is_whole = static_cast<int>(i % tiles_x + 1) * kTileCells <= nx &&
+                          static_cast<int>(i / tiles_x + 1) * kTileCells <= ny;
+    std::fill_n(cells, kTileFloats, is_whole ? floor_mm() : std::numeric_limits<float>::lowest());
     if (keeps_cut_ids) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
     tiles_.push_back(TileArena::share(arena_, cells));
     cells_.push_back(cells);
   }
-  versions_.resize(count);
-  const std::vector<float> row(static_cast<std::size_t>(nx), floor_mm());
-  for (int j = 0; j < ny; ++j) set_row(j, row.data());
+  begin_change();
+  versions_.assign(count, change_);
+  for (std::size_t i = 0; i < count; ++i) fill_part_of_tile(i);
+}
+
+/// With the floor, what of a tile at the grid's far sides is in the grid.
+void TileGrid::fill_part_of_tile(std::size_t tile_index) {
+  const int i0 = static_cast<int>(tile_index) % tiles_x_ * kTileCells;
+  const int j0 = static_cast<int>(tile_index) / tiles_x_ * kTileCells;
+  const int i1 = std::min(nx_, i0 + kTileCells), j1 = std::min(ny_, j0 + kTileCells);
+  if (i1 - i0 == kTileCells && j1 - j0 == kTileCells) return;
+  float* const cells = tiles_[tile_index].get();
+  for (int j = j0; j < j1; ++j) {
+    for (int i = i0; i < i1; ++i) cells[offset(i, j)] = floor_mm();
+  }
 }
 
 TileGrid::~TileGrid() { meet_other_grids(); }
@@ -287,10 +302,30 @@ void TileGrid::share_equal_tiles() {
 }
 
 void TileGrid::copy_row(int j, float* out) const {
-  for (int i = 0; i < nx_; i += kBlockX) {
-    const float* from = tile(i / kTileCells, j / kTileCells) + offset(i, j);
-    out[i] = from[0];
-    if (i + 1 < nx_) out[i + 1] = from[1];
+  for (int tx = 0; tx < tiles_x_; ++tx) {
+    const int begin = tx * kTileCells, end = std::min(nx_, begin + kTileCells);
+    const float* from = tile(tx, j / kTileCells) + offset(begin, j);
+    int i = begin;
+    for (; i + kBlockX <= end; i += kBlockX, from += kBlockFloats)
+      std::copy_n(from, kBlockX, out + i);
+    if (i < end) std::copy_n(from, end - i, out + i);
+  }
+}
+
+void TileGrid::copy_rows(int j, float* out) const {
+  const auto width = static_cast<std::size_t>(nx_);
+  const int rows = std::min(kBlockY, ny_ - j);
+  for (int tx = 0; tx < tiles_x_; ++tx) {
+    const int begin = tx * kTileCells, end = std::min(nx_, begin + kTileCells);
+    const float* from = tile(tx, j / kTileCells) + offset(begin, j);
+    for (int i = begin; i < end; i += kBlockX, from += kBlockFloats) {
+      const int wide = std::min(kBlockX, end - i);
+      for (int y = 0; y < rows; ++y) {
+        float* const to = out + static_cast<std::size_t>(y) * width + i;
+        to[0] = from[y * kBlockX];
+        if (wide > 1) to[1] = from[y * kBlockX + 1];
+      }
+    }
   }
 }
 
@@ -298,9 +333,11 @@ void TileGrid::set_row(int j, const float* in) {
   begin_change();
   for (int tx = 0; tx < tiles_x_; ++tx) {
     float* const to = make_writable(index(tx, j / kTileCells));
-    const int end = std::min(nx_, (tx + 1) * kTileCells);
-    for (int i = tx * kTileCells; i < end; i += kBlockX)
-      std::copy_n(in + i, std::min(kBlockX, end - i), to + offset(i, j));
+    const int begin = tx * kTileCells, end = std::min(nx_, begin + kTileCells);
+    float* at = to + offset(begin, j);
+    int i = begin;
+    for (; i + kBlockX <= end; i += kBlockX, at += kBlockFloats) std::copy_n(in + i, kBlockX, at);
+    if (i < end) std::copy_n(in + i, end - i, at);
   }
 }
 

@@ -67,6 +67,9 @@ class TileGrid {
 
   /// Heights of row j, x = 0..nx-1.
   void copy_row(int j, float* out) const;
+  /// Of rows j to j + kBlockY - 1, as far as they are in the grid, one behind the other; `j`: of a
+  /// block's first row. In less time than row by row.
+  void copy_rows(int j, float* out) const;
   void set_row(int j, const float* in);
   /// The least height of cells x0 .. x1-1 of rows y0 .. y1-1, as far as they are in the grid, the
   /// floor at least; infinite if none is. Where the borders are those of blocks, 0.1 ns a cell.
@@ -110,6 +113,7 @@ class TileGrid {
            static_cast<std::size_t>(tx);
   }
   void meet_other_grids() const;
+  void fill_part_of_tile(std::size_t tile_index);
   void set_tile(std::size_t tile_index, std::shared_ptr<float> tile) {
     cells_[tile_index] = tile.get();
     tiles_[tile_index] = std::move(tile);

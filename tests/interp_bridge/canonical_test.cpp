@@ -33,6 +33,29 @@ TEST(Canonical, StraightFeedHasSixNumbers) {
   EXPECT_TRUE(std::signbit(line.command.number(5)));
 }
 
+TEST(Canonical, CoordinatesOfRecordsFitUpToAGreatNumber) {
+  CanonicalCommand command;
+  for (const CanonicalName name : {CanonicalName::kStraightFeed, CanonicalName::kStraightTraverse,
+                                   CanonicalName::kStraightProbe}) {
+    for (const std::uint8_t count : {std::uint8_t{6}, std::uint8_t{9}}) {
+      command.name = name;
+      command.argument_count = count;
+      command.arguments.fill(-1e15);
+      EXPECT_TRUE(canonical_arguments_fit(command));
+      for (std::size_t i = 0; i < count; ++i) {
+        for (const double wild : {1.1e15, -1.1e15, std::numeric_limits<double>::infinity(),
+                                  std::numeric_limits<double>::quiet_NaN()}) {
+          command.arguments[i] = wild;
+          EXPECT_FALSE(canonical_arguments_fit(command)) << wild << " at " << i;
+        }
+        command.arguments[i] = 0;
+      }
+    }
+    command.argument_count = 5;
+    EXPECT_FALSE(canonical_arguments_fit(command)) << "one is missing";
+  }
+}
+
 TEST(Canonical, NColumnForms) {
   const auto n = [](std::string_view head) {
     const CanonicalLine line = parse(std::string(head) + "FLOOD_ON()");

@@ -12,6 +12,7 @@
 #include "base/small_file.h"
 #include "base/text_scan.h"
 #include "base/translate.h"
+#include "base/triple.h"
 #include "stock/cutter/shape_spec.h"
 #include "stock/millturn/mill_turn.h"
 #include "stock/octree/octree.h"
@@ -234,7 +235,12 @@ void TiltWatch::look_at(std::span<const Motion> motions, const WorkpieceFrame& f
   // Any tolerance will do: nothing is divided. A frame that the machine cannot have was refused
   // when the machine was set up.
   if (!moves_.follow(machine_, frame, 1.0)) return;
+  constexpr std::array<double, 3> kStraight{};
+  const bool one_type = !machine_->is_switchable();
+  const bool straight_is_upright = one_type && moves_.path()->stays_upright(Motion{});
   for (const Motion& m : motions) {
+    const bool straight = is_equal(m.from_abc_deg, kStraight) && is_equal(m.to_abc_deg, kStraight);
+    if (straight && straight_is_upright) continue;
     if (moves_.path()->stays_upright(m)) continue;
     std::string turned;
     for (std::size_t i = 0; i < 3; ++i) {

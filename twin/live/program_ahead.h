@@ -83,7 +83,7 @@ class ProgramAhead : private StepSink {
   BatchQueue queue_;
   MaterialHandover materials_;
   std::vector<TorchMaterial> planned_materials_;  ///< that the timeline knows
-  std::vector<Motion> batch_;
+  std::span<const Motion> batch_;                 ///< of queue_
   std::deque<PlannedMotion> motions_;
   std::uint64_t forgotten_ = 0;
   double planned_s_ = 0;

@@ -48,6 +48,10 @@ class MotionMoves {
   bool tilts() const { return tilts_; }
   /// The motion is one move of an upright tool: cut_move_from().
   bool is_upright(const Motion& motion) const { return !path_ || path_->is_upright(motion); }
+  /// The same, with this tool.
+  bool is_upright(const Motion& motion, const Cutter& cutter) const {
+    return live_path(cutter) == nullptr && is_upright(motion);
+  }
   /// A lathe that mills: driven tools (Cutter::live()) go in the workpiece as LivePaths say,
   /// whatever path() is.
   bool mills() const { return live_ != nullptr; }

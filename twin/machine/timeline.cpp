@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/block_copy.h"
 #include "twin/motion/motion_geometry.h"
 #include "twin/motion/motion_nearest.h"
 
@@ -27,8 +28,8 @@ Timeline::Waiting& Timeline::wait(const Motion& motion) {
     waiting_.resize(2 * waiting_.size());
   }
   Waiting& waiting = waiting_[(first_ + count_++) & (waiting_.size() - 1)];
-  waiting.motion = motion;
-  waiting.before = waiting.held = {};
+  copy_block(waiting.motion, motion);
+  if (holds_) waiting.before = waiting.held = {};
   waiting.open = false;
   return waiting;
 }
@@ -114,7 +115,7 @@ void Timeline::emit(const MotionTiming& timing) {
   TimedStep step;
   step.start_s = timing.start_s;
   step.duration_s = timing.duration_s;
-  step.held_before_s = waiting.before.sum_s();
+  if (holds_) step.held_before_s = waiting.before.sum_s();
   step.programmed_mm_per_min = timing.programmed_mm_per_min;
   step.allowed_mm_per_min = timing.allowed_mm_per_min;
   step.peak_mm_per_min = timing.peak_mm_per_min;

@@ -121,15 +121,22 @@ double lead_mm_of(const Motion& m) {
   return m.spindle == SpindleState::kClockwise ? m.feed_mm_per_min : -m.feed_mm_per_min;
 }
 
-CutMove cut_move_from(const Motion& m, std::uint64_t id) {
-  CutMove move;
+void set_cut_move(CutMove& move, const Motion& m, std::uint64_t id) {
   move.from_mm = m.from_mm;
   move.to_mm = m.to_mm;
   if (m.kind == MotionKind::kArc) {
     move.arc = CutArc{m.arc.center_mm, m.arc.axis, m.arc.sweep_rad};
+  } else {
+    move.arc.reset();
   }
+  move.axis_from = move.axis_to = {0, 0, 1};
   move.lead_mm = lead_mm_of(m);
   move.id = id;
+}
+
+CutMove cut_move_from(const Motion& m, std::uint64_t id) {
+  CutMove move;
+  set_cut_move(move, m, id);
   return move;
 }
 

@@ -43,6 +43,8 @@ double lead_mm_of(const Motion& motion);
 
 /// The motion as the stock model takes it.
 CutMove cut_move_from(const Motion& motion, std::uint64_t id);
+/// The same, into a move that is there already: takes less time.
+void set_cut_move(CutMove& move, const Motion& motion, std::uint64_t id);
 
 /// A piece of the path that the machine plans for a motion, as a motion of its own.
 Motion motion_of(const Motion& motion, const PathPiece& piece);

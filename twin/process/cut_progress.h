@@ -28,21 +28,26 @@ class CutProgress {
   }
   void end_step() {
     before_ += work_;
-    if (done_) *done_ = before_;
+    show(before_);
   }
   /// Of the present step, a share of the search for its contacts: half of what is to be done.
   void note_search(double share) {
     if (!done_ || !whole_) return;
     searched_ = kSearchShare * share * work_;
-    *done_ = before_ + searched_;
+    show(before_ + searched_);
   }
   /// A share of the cuts of the present step.
   void note_cut(double share) {
-    if (done_ && whole_) *done_ = before_ + searched_ + share * (work_ - searched_);
+    if (whole_) show(before_ + searched_ + share * (work_ - searched_));
   }
 
  private:
   static constexpr double kSearchShare = 0.5;
+
+  /// Nothing else hangs on it: who looks may see it a little later.
+  void show(double done) {
+    if (done_) done_->store(done, std::memory_order_relaxed);
+  }
 
   std::stop_token stop_;
   bool stopped_ = false;

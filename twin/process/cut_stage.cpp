@@ -127,7 +127,11 @@ void CutStage::cut(const Motion& m, const TimedStep& step, std::span<const PathP
   if (m.from_uvw_mm != m.to_uvw_mm) check_slides(m, step);
   if (traits_.turns) check_turns(m, step);
   const bool is_displaced = !traits_.by_length && m.length.displaces;
-  process_->take(is_displaced ? as_programmed(m) : m, step, path);
+  if (is_displaced) {
+    process_->take(as_programmed(m), step, path);
+  } else {
+    process_->take(m, step, path);
+  }
 }
 
 void CutStage::check_turns(const Motion& m, const TimedStep& step) {

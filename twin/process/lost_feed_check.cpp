@@ -9,6 +9,14 @@
 namespace kerf {
 
 void LostFeedCheck::watch(const Motion& m, const TimedStep& step) {
+  if (!m.by_number && !m.table_reloaded && !last_.by_number) {
+    last_.feed = is_held_back(m);
+    last_.merges = m.merge_tolerance_mm > 0;
+    last_.source = m.source;
+    last_.from_mm = m.from_mm;
+    last_.start_s = step.start_s;
+    return;
+  }
   Held now{is_held_back(m), m.merge_tolerance_mm > 0, m.by_number, m.source, m.from_mm,
            step.start_s};
   const bool joined = m.halts == 0 && m.chain_end == ChainEnd::kNone;

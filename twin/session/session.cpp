@@ -71,24 +71,10 @@ bool Session::cut_batch(CutStage& stage, std::span<const Motion> motions) {
   return true;
 }
 
-namespace {
-
-/// The motions come from another core: asked for all at once, they arrive in a third of the time
-/// that they take one after another.
-void fetch(std::span<const Motion> motions) {
-  constexpr std::size_t kCacheLine = 64;
-  const std::span<const std::byte> bytes = std::as_bytes(motions);
-  for (std::size_t at = 0; at < bytes.size(); at += kCacheLine)
-    __builtin_prefetch(bytes.data() + at, 0, 2);
-}
-
-}  // namespace
-
 bool Session::cut_some(CutStage& stage, std::span<const Motion> motions) {
   const Clock::time_point start = Clock::now();
   const WorkpieceFrame& frame = (second_pass_ ? *second_pass_ : *front_.program).workpiece_frame();
   motions = switched_.follow(motions, frame);
-  fetch(motions);
   tilt_.look_at(motions, frame);
   watch_tools(motions);
   if (must_begin_again()) return false;
@@ -145,7 +131,7 @@ Session::Pass Session::stream(CutStage& stage, std::stop_token stop) {
     queue.close();
   };
   HelperThread reader(read, release);
-  std::vector<Motion> batch;
+  std::span<const Motion> batch;
   while (queue.pop(batch)) {
     if (batch.empty()) {
       desk.serve([&stage](const ProbeQuestion& question) { return stage.answer(question); });

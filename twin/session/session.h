@@ -154,6 +154,7 @@ class Session {
   std::atomic<double> work_done_{0};
   SwitchedMotions switched_;
   std::optional<OpenTools> open_tools_;  ///< while such may be guessed that are met later
+  std::optional<int> known_tool_;  ///< has fed, and is none to be guessed; until a tool change
   bool lacks_tool_ = false;
   std::vector<Motion> kept_;  ///< motions of the first pass, complete if kept_whole_
   bool kept_whole_ = false;

@@ -83,6 +83,7 @@ bool Session::take_guesses(const ProgramSurvey& survey, Diagnostics& diagnostics
   front_.tools.guesses = survey.tools(bounds.max.z);
   front_.choice = choose_stock(options_.stock, stock_needs(front_.tools));
   open_tools_.reset();
+  known_tool_.reset();
   return make_room_for_tilt(options_, tilt_.found(), front_, diagnostics, outcome) &&
          fill_front(options_, front_, diagnostics, outcome);
 }
@@ -114,10 +115,15 @@ void Session::watch_tools(std::span<const Motion> motions) {
   if (!open_tools_ || lacks_tool_) return;
   const bool described = front_.tools.describes();
   for (const Motion& m : motions) {
+    if (m.kind == MotionKind::kToolChange || known_tool_ != m.tool) known_tool_.reset();
+    if (known_tool_) continue;
     const ResolvedTool* const tool = open_tools_->feeding(m);
     if (!tool) continue;
     const bool is_open = !tool->cutter && !(described && m.tool != 0);
-    if (!is_open && !tool->is_size_alone()) continue;
+    if (!is_open && !tool->is_size_alone()) {
+      known_tool_ = m.tool;
+      continue;
+    }
     lacks_tool_ = true;
     return;
   }

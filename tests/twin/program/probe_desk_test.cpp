@@ -24,7 +24,7 @@ TEST(ProbeDesk, TheAnswerComesBehindAllMotionsBefore) {
   });
   std::size_t taken = 0;
   int asked = 0;
-  std::vector<Motion> batch;
+  std::span<const Motion> batch;
   while (queue.pop(batch)) {
     taken += batch.size();
     if (!batch.empty()) continue;
@@ -49,7 +49,7 @@ TEST(ProbeDesk, WhereNobodyAnswersItIsUnknown) {
     EXPECT_EQ(desk.ask({}).kind, ProbeAnswer::Kind::kUnknown);
     EXPECT_EQ(desk.ask({}).kind, ProbeAnswer::Kind::kUnknown) << "closed before it asks";
   });
-  std::vector<Motion> batch;
+  std::span<const Motion> batch;
   ASSERT_TRUE(queue.pop(batch));
   EXPECT_TRUE(batch.empty());
   queue.close();

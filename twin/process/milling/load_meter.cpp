@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -88,8 +89,8 @@ struct LoadMeter::Impl {
   double free_cells() const { return stock_.takes_tilted_tools() ? kFreeBlocks : kFreeCells; }
   double window_mm(const Cutter& cutter) const;
   double window_mm(const Cutter& cutter, const CutMove& move) const;
-  MotionReach reach(const Cutter& cutter, const CutMove& move, double duration_s,
-                    double speed_mm_per_s);
+  void look(const Cutter& cutter, const CutMove& move, double duration_s, double speed_mm_per_s,
+            MotionReach& reach);
   bool is_within(const CutMove& move) const;
   MotionLoad measure(const Cutter& cutter, const CutMove& move, double known);
   bool scan(const Cutter& cutter, const CutMove& move, double known, MotionLoad& load);
@@ -139,9 +140,9 @@ struct LoadMeter::Impl {
 LoadMeter::LoadMeter(const StockModel& stock) : impl_(std::make_unique<Impl>(stock)) {}
 LoadMeter::~LoadMeter() = default;
 
-MotionReach LoadMeter::reach(const Cutter& cutter, const CutMove& move, double duration_s,
-                             double speed_mm_per_s) {
-  return impl_->reach(cutter, move, duration_s, speed_mm_per_s);
+void LoadMeter::look(const Cutter& cutter, const CutMove& move, double duration_s,
+                     double speed_mm_per_s, MotionReach& reach) {
+  impl_->look(cutter, move, duration_s, speed_mm_per_s, reach);
 }
 
 bool LoadMeter::affords_short() const {
@@ -228,15 +229,16 @@ FeedPart LoadMeter::Impl::clipped_part(const CutMove& move) const {
   return part;
 }
 
-MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, double duration_s,
-                                   double speed_mm_per_s) {
-  MotionReach reach;
+void LoadMeter::Impl::look(const Cutter& cutter, const CutMove& move, double duration_s,
+                           double speed_mm_per_s, MotionReach& reach) {
   if (cutter.undercuts()) hollow_ = true;
   held_ = asked_;
-  asked_ = {move.from_mm, move.to_mm, move.arc ? nullptr : cutter.profile().data()};
-  const double length_mm = way_length_mm(move);
+  asked_.from_mm = move.from_mm;
+  asked_.to_mm = move.to_mm;
+  asked_.cutter = move.arc ? nullptr : cutter.profile().data();
+  const double length_mm = move.arc ? way_length_mm(move) : glm::length(move.to_mm - move.from_mm);
   profile_ = WayProfile(length_mm, duration_s, speed_mm_per_s);
-  if (profile_.length_mm() <= 0) return reach;
+  if (profile_.length_mm() <= 0) return;
   lasts_ = duration_s >= kLasting_s;
   if (is_within(move)) {
     from_ = 0, to_ = 1;
@@ -265,7 +267,6 @@ MotionReach LoadMeter::Impl::reach(const Cutter& cutter, const CutMove& move, do
   const double swept_mm2 = diameter_mm * (level ? way_mm : std::min(way_mm, diameter_mm));
   left_looks_ += kShare * swept_mm2 / (cell_mm * cell_mm);
   left_cells_ += kCloseShare * swept_mm2 / (cell_mm * cell_mm);
-  return reach;
 }
 
 /// Something is, below the heights: an M-map's may say less than what is there. Asked once; what

@@ -79,8 +79,15 @@ class LoadMeter {
 
   /// Of each feed move that is going to be cut (is_one_piece()) and lasts so long.
   /// `speed_mm_per_s`: the greatest on the way, 0: not known.
+  /// `reach` is a fresh one.
+  void look(const Cutter& cutter, const CutMove& move, double duration_s, double speed_mm_per_s,
+            MotionReach& reach);
   MotionReach reach(const Cutter& cutter, const CutMove& move, double duration_s,
-                    double speed_mm_per_s);
+                    double speed_mm_per_s) {
+    MotionReach reach;
+    look(cutter, move, duration_s, speed_mm_per_s, reach);
+    return reach;
+  }
   /// Moves that last are always measured, short ones while half of what is free is left.
   bool affords_short() const;
   /// Of the move that reach() was asked about last; all before it has been given to the model.

@@ -41,7 +41,7 @@ void MillingStage::measure(const Motion& m, const TimedStep& step, InFlight& fli
     load_meter_.cut_parts(cutter, divided_, cut_parts_);
     return;
   }
-  flight.reach = load_meter_.reach(cutter, divided_[0], step.duration_s, step.peak_mm_per_min / 60);
+  load_meter_.look(cutter, divided_[0], step.duration_s, step.peak_mm_per_min / 60, flight.reach);
   const bool lasts = step.duration_s >= LoadMeter::kLasting_s;
   if (!lasts && step.length_mm < kLeastOfWindow * load_meter_.window_mm(cutter)) return;
   if ((!lasts && !load_meter_.affords_short()) || !comes_near(m)) return;

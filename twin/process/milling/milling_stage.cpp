@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/block_copy.h"
 #include "base/translate.h"
 #include "stock/cutter/cutting_shank.h"
 #include "twin/machine/planned_pieces.h"
@@ -272,16 +273,20 @@ void MillingStage::check_parts(const Motion& m, const CheckedMove& cut) {
   const bool upright = site_.moves.is_upright(m);
   // What turns is divided so that its flutes are where they should be; what is far above them needs
   // shorter pieces for that.
-  CheckedMove move = cut;
   const double reach_mm = upright ? 0 : std::max(parts_.reach_mm(), fixtures_.reach_mm());
-  if (reach_mm > MotionMoves::reach_mm(cut.cutter)) {
+  if (reach_mm > 0 && reach_mm > MotionMoves::reach_mm(cut.cutter)) {
     finer_.clear();
     finer_ends_.clear();
     if (site_.moves.append_reaching(m, reach_mm, 0, finer_, &finer_ends_)) {
-      move.moves = finer_;
-      move.ends = finer_ends_;
+      check_pieces(m, {m, cut.step, cut.cutter, finer_, cut.tool, cut.tool_guessed, finer_ends_},
+                   upright);
+      return;
     }
   }
+  check_pieces(m, cut, upright);
+}
+
+void MillingStage::check_pieces(const Motion& m, const CheckedMove& move, bool upright) {
   if (fixtures_.active()) fixtures_.check(move);
   const bool is_seen = upright || stock_.takes_tilted_tools();
   if (!is_seen || !parts_.may_matter(move.moves)) {
@@ -330,8 +335,13 @@ ProbeAnswer MillingStage::answer(const ProbeQuestion& question) {
 
 /// What it is cut as. False: it turns so far that it cannot be.
 bool MillingStage::divide(const Motion& m, const TimedStep& step) {
-  divided_.clear();
   ends_.clear();
+  if (site_.moves.is_upright(m, *mounted_->cutter)) {
+    divided_.resize(1);
+    set_cut_move(divided_[0], m, 0);
+    return true;
+  }
+  divided_.clear();
   const bool done = site_.moves.append(m, *mounted_->cutter, 0, divided_, &ends_);
   if (!done) report_endless_turn(m, step);
   return done;
@@ -392,9 +402,12 @@ void MillingStage::push(const Motion& m, const TimedStep& step, bool spindle_off
 void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spindle_off) {
   const std::uint64_t id =
       site_.labels ? site_.labels->number_of({mounted_->number, m.source}) : next_id_++;
+  const bool one = divided_.size() == 1;
   double ways = 0;
-  for (const CutMove& move : divided_) ways += way_of(move);
-  InFlight flight;
+  for (std::size_t i = 0; !one && i < divided_.size(); ++i) ways += way_of(divided_[i]);
+  static const InFlight kFresh;
+  InFlight& flight = flight_;
+  copy_block(flight, kFresh);
   flight.duration_s = step.duration_s;
   flight.start_s = step.start_s;
   flight.source = m.source;
@@ -418,8 +431,11 @@ void MillingStage::push_moves(const Motion& m, const TimedStep& step, bool spind
     pieces_.before(cutting(), move, by);
     moves_.push_back(move);
     if (!cut_parts_.empty()) flight.cut_part = cut_parts_[pushed];
-    const double share = ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
-    flight.duration_s = step.duration_s * share;
+    if (!one) {
+      const double share =
+          ways > 0 ? way_of(move) / ways : 1 / static_cast<double>(divided_.size());
+      flight.duration_s = step.duration_s * share;
+    }
     in_flight_.push_back(flight);
     flight.parts = 0;
     pieces_.after(move, by);

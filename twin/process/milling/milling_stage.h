@@ -124,6 +124,7 @@ class MillingStage final : public Process {
   void report_endless_turn(const Motion& motion, const TimedStep& step);
   void report_outside_stock();
   void check_parts(const Motion& motion, const CheckedMove& move);
+  void check_pieces(const Motion& motion, const CheckedMove& move, bool upright);
   void check_machine(const Motion& motion, const TimedStep& step);
   void check_length(const Motion& motion, const TimedStep& step, bool touches);
   void report_nothing_cut();
@@ -198,6 +199,7 @@ class MillingStage final : public Process {
   std::size_t moves_per_cut_;
   std::vector<double> cut_parts_;  ///< of divided_, where it is not one move
   std::vector<CutMove> moves_;
+  InFlight flight_;                  ///< the one that is pushed now
   std::vector<InFlight> in_flight_;  ///< one a move whose report has not come, in order
   std::vector<CutReport> reports_;
   std::uint64_t next_id_ = 0;

@@ -24,17 +24,6 @@ Motion motion_of(const CutMove& move) {
 
 }  // namespace
 
-WayProfile::WayProfile(double length_mm, double duration_s, double speed_mm_per_s) {
-  if (length_mm <= 0 || duration_s <= 0) return;
-  length_mm_ = length_mm;
-  duration_s_ = duration_s;
-  // A motion that is blended with the next one may have less time than its way takes.
-  speed_mm_per_s_ = speed_mm_per_s > 0 ? speed_mm_per_s : length_mm / duration_s;
-  ramp_s_ = std::max(0.0, duration_s - length_mm / speed_mm_per_s_);
-  ramp_mm_ = speed_mm_per_s_ * ramp_s_ / 2;
-  if (ramp_mm_ * 2 > length_mm) ramp_mm_ = ramp_s_ = 0;
-}
-
 /// Up to full speed within ramp_mm_, and down again.
 double WayProfile::at_s(double part) const {
   const double way = part * length_mm_;

@@ -1,6 +1,8 @@
 // twin/process/milling/way_profile.h - when a machine is where along a move.
 #pragma once
 
+#include <algorithm>
+
 #include "stock/stock_model.h"
 
 namespace kerf {
@@ -13,7 +15,16 @@ class WayProfile {
   WayProfile() = default;
   /// `speed_mm_per_s`: the greatest on the way, 0: not known. Nothing is known of a way of no
   /// length or no time.
-  WayProfile(double length_mm, double duration_s, double speed_mm_per_s);
+  WayProfile(double length_mm, double duration_s, double speed_mm_per_s) {
+    if (length_mm <= 0 || duration_s <= 0) return;
+    length_mm_ = length_mm;
+    duration_s_ = duration_s;
+    // A motion that is blended with the next one may have less time than its way takes.
+    speed_mm_per_s_ = speed_mm_per_s > 0 ? speed_mm_per_s : length_mm / duration_s;
+    ramp_s_ = std::max(0.0, duration_s - length_mm / speed_mm_per_s_);
+    ramp_mm_ = speed_mm_per_s_ * ramp_s_ / 2;
+    if (ramp_mm_ * 2 > length_mm) ramp_mm_ = ramp_s_ = 0;
+  }
 
   double length_mm() const { return length_mm_; }
   double speed_mm_per_s() const { return speed_mm_per_s_; }
