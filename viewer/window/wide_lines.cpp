@@ -9,6 +9,8 @@ namespace {
 
 /// Of the two triangles of a line.
 constexpr int kCorners = 6;
+/// Those before are of the vertices and of the colours of moves.
+constexpr int kNumberUnit = 2;
 
 }  // namespace
 
@@ -27,6 +29,8 @@ void WideLines::use(const Projection& projection, float towards_eye) const {
   program_.set("ends", 0);
   program_.set("step", 1);
   program_.set("is_smooth", 1);
+  program_.set("numbers", kNumberUnit);
+  program_.set("is_numbered", 0);
   program_.set("single", glm::ivec2(-1));
   set_moves(program_, {});
 }
@@ -47,6 +51,17 @@ void WideLines::bind(const GlTexture& texture, const GlBuffer& vertices) const {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_BUFFER, texture.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, vertices.name());
+}
+
+void WideLines::set_numbered(bool is_numbered) const {
+  program_.set("is_numbered", is_numbered ? 1 : 0);
+}
+
+void WideLines::bind_numbers(const GlTexture& texture, const GlBuffer& numbers) const {
+  glActiveTexture(GL_TEXTURE0 + kNumberUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, texture.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_R16UI, numbers.name());
+  glActiveTexture(GL_TEXTURE0);
 }
 
 void WideLines::draw_strip(int first, int count) const {

@@ -36,7 +36,10 @@ class WideLines {
 
   /// Draws from this buffer, whose texture it is, from now on. Any vertex array must be bound.
   void bind(const GlTexture& texture, const GlBuffer& vertices) const;
-  /// One strip through the vertices [first, first + count).
+  /// Strips are of vertices with the numbers that this buffer has, 16 bits each; else of all.
+  void set_numbered(bool is_numbered) const;
+  void bind_numbers(const GlTexture& texture, const GlBuffer& numbers) const;
+  /// One strip through the vertices [first, first + count), or through those numbers.
   void draw_strip(int first, int count) const;
   /// Lines between the vertices 0 and 1, 2 and 3 ..
   void draw_pairs(int count) const;
