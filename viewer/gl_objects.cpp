@@ -64,8 +64,10 @@ Result<GlProgram> GlProgram::create(const char* vertex_source, const char* fragm
   glAttachShader(program.name_, vertex);
   glAttachShader(program.name_, fragment);
   glLinkProgram(program.name_);
-  glDeleteShader(vertex);  // They live on while attached.
-  glDeleteShader(fragment);
+  for (const GLuint shader : {vertex, fragment}) {
+    glDetachShader(program.name_, shader);  // While attached it would keep its memory.
+    glDeleteShader(shader);
+  }
   GLint ok = GL_FALSE;
   glGetProgramiv(program.name_, GL_LINK_STATUS, &ok);
   if (ok != GL_TRUE) {
@@ -104,6 +106,11 @@ void GlProgram::set(const char* uniform, const glm::vec4& value) const {
 }
 void GlProgram::set(const char* uniform, const glm::mat4& value) const {
   glUniformMatrix4fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void release_gl_compiler() {
+  const bool can = epoxy_gl_version() >= 41 || epoxy_has_gl_extension("GL_ARB_ES2_compatibility");
+  if (can) glReleaseShaderCompiler();
 }
 
 void allocate_texture(const GlTexture& texture, GLint internal_format, GLenum format, GLenum type,

@@ -67,6 +67,10 @@ class GlProgram {
   GLuint name_ = 0;
 };
 
+/// All programs have been created for now: the compiler gives back its own memory until the next
+/// one is, 6 MB of Mesa's.
+void release_gl_compiler();
+
 /// Allocates a 2D texture for drawing into: no mipmaps, clamped at the border. `filter`: GL_NEAREST
 /// or GL_LINEAR.
 void allocate_texture(const GlTexture& texture, GLint internal_format, GLenum format, GLenum type,
