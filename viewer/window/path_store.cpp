@@ -24,6 +24,9 @@ constexpr double kNearer_px = 2.5;
 /// What is seen of a chunk that reaches an edge of the picture is found by about so many boxes.
 constexpr std::size_t kSeenBoxes = 8;
 
+/// After so many the card begins to draw, as PatchStore has it.
+constexpr std::size_t kFlushedVertices = 16'384;
+
 /// Of a chunk's box, and of a run's, in each direction.
 constexpr double kSteps = 65535.0, kPlaces = 255.0;
 
@@ -548,9 +551,15 @@ void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_
     if (is_past != told_past) set_is_past(is_past);
     told_past = is_past;
   };
+  std::size_t waiting = 0;
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const Chunk& chunk = chunks_[c];
     if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
+    waiting += chunk.strips[chunk.level].count;
+    if (waiting > kFlushedVertices) {
+      glFlush();
+      waiting = 0;
+    }
     const bool is_smooth = may_smooth && chunk.is_smooth;
     set_smooth(is_smooth);
     (is_smooth || !is_opaque ? glEnable : glDisable)(GL_BLEND);
