@@ -33,7 +33,7 @@ struct TrackPosition {
 
 /// The motions of a program, in order, numbered from 0, with their times. Immutable once built, so
 /// any number of threads may read it. A motion comes out bit for bit as it went in; a million of a
-/// CAM program take about 16 MB (bytes()). Reading one costs about 0.1 us.
+/// CAM program take about 22 MB (bytes()). Reading one costs about 0.1 us.
 class ProgramTrack {
  public:
   std::size_t size() const { return line_.size(); }
