@@ -126,9 +126,7 @@ Box PathStore::Chunk::box_of(const RunBox& run) const {
 Result<PathStore> PathStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::path_vert, shaders::path_frag);
   if (!program) return Error{program.error()};
-  Result<WideLines> wide = WideLines::create();
-  if (!wide) return Error{wide.error()};
-  return PathStore(std::move(*program), std::move(*wide));
+  return PathStore(std::move(*program));
 }
 
 void PathStore::set_chunk_count(std::uint32_t count) {

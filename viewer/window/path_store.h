@@ -132,8 +132,7 @@ class PathStore {
     Box box_of(const RunBox& run) const;
   };
 
-  PathStore(GlProgram program, WideLines wide)
-      : program_(std::move(program)), wide_(std::move(wide)) {}
+  explicit PathStore(GlProgram program) : program_(std::move(program)) {}
   bool is_wide() const { return WideLines::are_needed(projection_); }
   /// The program that draws, with what all lines have in common.
   void use_program() const;
