@@ -64,8 +64,10 @@ Result<GlProgram> GlProgram::create(const char* vertex_source, const char* fragm
   glAttachShader(program.name_, vertex);
   glAttachShader(program.name_, fragment);
   glLinkProgram(program.name_);
-  glDeleteShader(vertex);  // They live on while attached.
-  glDeleteShader(fragment);
+  for (const GLuint shader : {vertex, fragment}) {
+    glDetachShader(program.name_, shader);  // While attached it would keep its memory.
+    glDeleteShader(shader);
+  }
   GLint ok = GL_FALSE;
   glGetProgramiv(program.name_, GL_LINK_STATUS, &ok);
   if (ok != GL_TRUE) {
@@ -76,13 +78,19 @@ Result<GlProgram> GlProgram::create(const char* vertex_source, const char* fragm
   return program;
 }
 
+GlProgram GlProgram::stand_in() {
+  GlProgram program(glCreateProgram());
+  program.is_stand_in_ = true;
+  return program;
+}
+
 GlProgram::~GlProgram() {
   if (name_ != 0) glDeleteProgram(name_);
 }
 
 GLint GlProgram::location(const char* uniform) const {
   const GLint found = glGetUniformLocation(name_, uniform);
-  assert(found >= 0);  // A misspelt or unused uniform is our mistake.
+  assert(found >= 0 || is_stand_in_);  // A misspelt or unused uniform is our mistake.
   return found;
 }
 
@@ -104,6 +112,11 @@ void GlProgram::set(const char* uniform, const glm::vec4& value) const {
 }
 void GlProgram::set(const char* uniform, const glm::mat4& value) const {
   glUniformMatrix4fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void release_gl_compiler() {
+  const bool can = epoxy_gl_version() >= 41 || epoxy_has_gl_extension("GL_ARB_ES2_compatibility");
+  if (can) glReleaseShaderCompiler();
 }
 
 void allocate_texture(const GlTexture& texture, GLint internal_format, GLenum format, GLenum type,

@@ -45,9 +45,13 @@ class GlProgram {
  public:
   /// Error: the log of the GL compiler.
   static Result<GlProgram> create(const char* vertex_source, const char* fragment_source);
-  GlProgram(GlProgram&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  /// In the place of one that could not be created: nothing is drawn right until that is told.
+  static GlProgram stand_in();
+  GlProgram(GlProgram&& other) noexcept
+      : name_(std::exchange(other.name_, 0)), is_stand_in_(other.is_stand_in_) {}
   GlProgram& operator=(GlProgram&& other) noexcept {
     std::swap(name_, other.name_);
+    std::swap(is_stand_in_, other.is_stand_in_);
     return *this;
   }
   ~GlProgram();
@@ -65,7 +69,12 @@ class GlProgram {
   explicit GlProgram(GLuint name) : name_(name) {}
   GLint location(const char* uniform) const;
   GLuint name_ = 0;
+  bool is_stand_in_ = false;
 };
+
+/// All programs have been created for now: the compiler gives back its own memory until the next
+/// one is, 6 MB of Mesa's.
+void release_gl_compiler();
 
 /// Allocates a 2D texture for drawing into: no mipmaps, clamped at the border. `filter`: GL_NEAREST
 /// or GL_LINEAR.

@@ -1,8 +1,6 @@
 #include "viewer/scene.h"
 
 #include <algorithm>
-#include <cassert>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -39,27 +37,6 @@ std::vector<LineSegment> box_outline(const Box& box) {
     }
   }
   return lines;
-}
-
-SourceFile::SourceFile(std::string path, std::string text)
-    : path_(std::move(path)), text_(std::move(text)) {
-  assert(text_.size() <= std::numeric_limits<std::uint32_t>::max());
-  for (std::size_t start = 0; start < text_.size();) {
-    starts_.push_back(static_cast<std::uint32_t>(start));
-    const std::size_t end = text_.find('\n', start);
-    if (end == std::string::npos) break;
-    start = end + 1;
-  }
-  starts_.shrink_to_fit();
-}
-
-std::string_view SourceFile::line(int number) const {
-  if (number < 1 || number > line_count()) return {};
-  const auto index = static_cast<std::size_t>(number - 1);
-  const std::size_t end = index + 1 < starts_.size() ? starts_[index + 1] : text_.size();
-  std::string_view text = std::string_view(text_).substr(starts_[index], end - starts_[index]);
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
-  return text;
 }
 
 void merge(SceneUpdate* older, SceneUpdate newer) {

@@ -22,6 +22,7 @@
 #include "base/mesh_patch.h"
 #include "base/triangle_mesh.h"
 #include "surface/height_grid.h"
+#include "viewer/source_file.h"
 #include "viewer/standing.h"
 
 namespace kerf {
@@ -136,21 +137,6 @@ struct SceneFinding {
 
 struct FindingList {
   std::vector<SceneFinding> findings;  ///< In the order of time.
-};
-
-/// One file of a program. Lines are 1-based.
-class SourceFile {
- public:
-  SourceFile(std::string path, std::string text);
-  const std::string& path() const { return path_; }
-  int line_count() const { return static_cast<int>(starts_.size()); }
-  /// Without its end; empty if there is no such line.
-  std::string_view line(int number) const;
-
- private:
-  std::string path_;
-  std::string text_;
-  std::vector<std::uint32_t> starts_;  ///< of lines, in text_, which has less than 4 GB
 };
 
 /// The program and the subroutine files that it calls. The first is the main program.

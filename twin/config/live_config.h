@@ -94,7 +94,7 @@ struct ConfigFollow {
 
 struct ConfigView {
   bool window = true;  ///< of shadow and replay
-  double keyframes_mb = 48;
+  double keyframes_mb = 32;
 };
 
 /// What all kinds of source have in common.

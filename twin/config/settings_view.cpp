@@ -42,7 +42,7 @@ constexpr std::array kViewSettings{
             .unit = "MB",
             .least = 1,
             .most = 1e6,
-            .fallback = "48",
+            .fallback = "32",
             .purpose = tr_noop("kerf view: memory for jumping to and fro in the program"),
             .help = tr_noop("memory for jumping to and fro in the program (default {})"),
             .value_name = "MB"},

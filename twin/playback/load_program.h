@@ -82,7 +82,7 @@ struct LoadControl {
 /// leave nothing to play; they are in `diagnostics`, and `outcome` says of which kind.
 /// `diagnostics` also gets warnings about files.
 ///
-/// A million motions of a CAM program take 3 to 4 s, nearly all of it the interpreter's, and 35 MB
+/// A million motions of a CAM program take 3 to 4 s, nearly all of it the interpreter's, and 22 MB
 /// (ProgramTrack::bytes()).
 std::unique_ptr<LoadedProgram> load_program(const SessionOptions& options,
                                             const LoadControl& control, Diagnostics& diagnostics,

@@ -12,10 +12,7 @@ constexpr double kDecimals = 1e4;
 constexpr double kMostDecimals = 9e15;
 
 std::uint8_t width_of(std::uint64_t range) {
-  if (range == 0) return 0;
-  if (range <= 0xff) return 1;
-  if (range <= 0xffff) return 2;
-  return range <= 0xffff'ffff ? 4 : 8;
+  return static_cast<std::uint8_t>((std::bit_width(range) + 7) / 8);
 }
 
 double from_decimals(std::uint64_t count) {

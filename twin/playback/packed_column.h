@@ -12,7 +12,7 @@ namespace kerf {
 /// Appended one by one, read in any order, given back bit for bit (-0 and NaN too). Numbers are
 /// packed in blocks of kBlock: one that never changes takes nothing but the block's head, whole
 /// numbers and decimals of four places (what NC programs are written in) as many bytes as their
-/// range within the block needs, and all others eight.
+/// range within the block needs, and all others as many as that of their bits, up to eight.
 class PackedColumn {
  public:
   enum class Of : std::uint8_t { kIntegers, kReals };
@@ -39,7 +39,7 @@ class PackedColumn {
   struct Head {
     std::uint64_t base = 0;
     std::uint32_t offset = 0;  ///< in units of kUnit bytes
-    std::uint8_t width = 0;    ///< 0, 1, 2, 4, 8
+    std::uint8_t width = 0;    ///< 0 to 8
     bool decimal = false;
   };
   static constexpr std::size_t kUnit = 256;

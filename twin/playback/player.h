@@ -55,7 +55,7 @@ struct PlayerProgram {
 struct PlayerOptions {
   /// For keyframes. The workpiece at the place, the one of the checks and those that readers of
   /// states still hold come on top.
-  std::size_t keyframe_bytes = std::size_t{48} << 20;
+  std::size_t keyframe_bytes = std::size_t{32} << 20;
   /// While it plays, a new state at least this often (if the place moves).
   std::chrono::milliseconds publish_period{16};
   /// Cut and check the program to its end while there is nothing else to do: findings and

@@ -38,6 +38,9 @@ bool continues(const Motion& motion, const Motion& previous) {
   return true;
 }
 
+/// Small differences lie close to it on both sides.
+constexpr std::uint64_t kNoChange = std::uint64_t{1} << 63;
+
 std::uint64_t line_key(SourceRef source) { return std::uint64_t{source.file} << 32 | source.line; }
 
 }  // namespace
@@ -127,13 +130,19 @@ void ProgramTrack::append_part(std::size_t i, double fraction, const MotionMoves
 TimedStep ProgramTrack::step(std::size_t i) const {
   TimedStep step;
   step.start_s = start_s(i);
-  step.duration_s = duration_s_.real_at(i);
+  step.duration_s = motion_s(i);
   step.programmed_mm_per_min = programmed_.real_at(i);
   step.allowed_mm_per_min = allowed_.real_at(i);
   step.way = way(i);
   const Motion m = motion(i);
   if (is_move(m) && m.start_known) step.length_mm = fed_length_mm(m);
   return step;
+}
+
+double ProgramTrack::motion_s(std::size_t i) const {
+  const double until_next_s = i + 1 < size() ? start_s(i + 1) - start_s(i) : 0;
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(until_next_s) + duration_change_.at(i) -
+                               kNoChange);
 }
 
 TrackPosition ProgramTrack::place_before(std::size_t i) const {
@@ -155,7 +164,7 @@ TrackPosition ProgramTrack::place_at(double time_s) const {
   if (first == 0) return place_before(0);
   const std::size_t motion = first - 1;
   const double start = start_s(motion);
-  const double duration = duration_s_.real_at(motion);
+  const double duration = motion_s(motion);
   if (duration <= 0 || time_s - start >= duration) {
     return {motion + 1, 0, std::min(time_s, duration_s())};
   }
@@ -165,26 +174,33 @@ TrackPosition ProgramTrack::place_at(double time_s) const {
 }
 
 std::size_t ProgramTrack::line_lower_bound(SourceRef line, std::size_t motion) const {
-  const auto before = [this](std::uint32_t block, const std::pair<std::uint64_t, std::size_t>& k) {
-    return std::pair<std::uint64_t, std::size_t>(line_key(source(block)), block) < k;
-  };
-  const auto found =
-      std::lower_bound(lines_.begin(), lines_.end(), std::pair(line_key(line), motion), before);
-  return static_cast<std::size_t>(found - lines_.begin());
+  const std::pair<std::uint64_t, std::size_t> key(line_key(line), motion);
+  std::size_t first = 0;
+  for (std::size_t count = lines_.size(); count > 0;) {
+    const std::size_t half = count / 2;
+    const std::size_t block = motion_of_line(first + half);
+    if (std::pair(line_key(source(block)), block) < key) {
+      first += half + 1;
+      count -= half + 1;
+    } else {
+      count = half;
+    }
+  }
+  return first;
 }
 
 std::optional<std::size_t> ProgramTrack::first_of_line(SourceRef line, std::size_t from) const {
   // Within a block the next motion of its line may be `from` itself.
   if (from < size() && source(from) == line) return from;
   const std::size_t at = line_lower_bound(line, from);
-  if (at == lines_.size() || source(lines_[at]) != line) return std::nullopt;
-  return lines_[at];
+  if (at == lines_.size() || source(motion_of_line(at)) != line) return std::nullopt;
+  return motion_of_line(at);
 }
 
 std::optional<SourceRef> ProgramTrack::line_with_motions(SourceRef line) const {
   const std::size_t at = line_lower_bound(line, 0);
   if (at == lines_.size()) return std::nullopt;
-  const SourceRef found = source(lines_[at]);
+  const SourceRef found = source(motion_of_line(at));
   if (found.file != line.file) return std::nullopt;
   return found;
 }
@@ -229,14 +245,14 @@ std::size_t ProgramTrack::bytes() const {
     for (const PackedColumn& column : *columns) sum += column.bytes() - sizeof column;
   }
   for (const PackedColumn* column :
-       {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_, &duration_s_, &programmed_, &allowed_,
-        &line_, &selected_tool_, &selected_at_, &mode_, &way_}) {
+       {&arc_sweep_rad_, &feed_, &spindle_rpm_, &start_s_, &duration_change_, &programmed_,
+        &allowed_, &line_, &lines_, &selected_tool_, &selected_at_, &mode_, &way_}) {
     sum += column->bytes() - sizeof *column;
   }
   sum += modes_.capacity() * sizeof(Motion) + jumps_.capacity() * sizeof(Jump);
   sum += ways_.capacity() * sizeof(PackedWay);
   sum += block_start_.capacity() * sizeof(std::uint64_t);
-  return sum + (lines_.capacity() + tool_changes_.capacity()) * sizeof(std::uint32_t);
+  return sum + tool_changes_.capacity() * sizeof(std::uint32_t);
 }
 
 ProgramTrackBuilder::ProgramTrackBuilder() : track_(new ProgramTrack) {}
@@ -338,7 +354,7 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   if (i % 64 == 0) t.block_start_.push_back(0);
   if (starts) {
     t.block_start_.back() |= std::uint64_t{1} << (i % 64);
-    t.lines_.push_back(number);
+    t.lines_.push(number);
   }
   const bool changes = i == 0 ? m.tool != 0 : m.tool != previous_.tool;
   if (changes || m.kind == MotionKind::kToolChange) t.tool_changes_.push_back(number);
@@ -353,7 +369,9 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   t.feed_.push_real(m.feed_mm_per_min);
   t.spindle_rpm_.push_real(m.spindle_rpm);
   t.start_s_.push_real(timed.start_s);
-  t.duration_s_.push_real(timed.duration_s);
+  if (i > 0) note_duration(timed.start_s - previous_start_s_);
+  previous_start_s_ = timed.start_s;
+  previous_duration_s_ = timed.duration_s;
   t.programmed_.push_real(timed.programmed_mm_per_min);
   t.allowed_.push_real(timed.allowed_mm_per_min);
   t.mode_.push(mode_of(m));
@@ -366,21 +384,36 @@ void ProgramTrackBuilder::step(const Motion& m, const TimedStep& timed,
   previous_ = m;
 }
 
+/// Of the motion before, as motion_s() has it.
+void ProgramTrackBuilder::note_duration(double until_next_s) {
+  track_->duration_change_.push(std::bit_cast<std::uint64_t>(previous_duration_s_) -
+                                std::bit_cast<std::uint64_t>(until_next_s) + kNoChange);
+}
+
 /// Blocks come in order of time; most programs run their lines in order, too.
 void ProgramTrackBuilder::sort_lines() {
   ProgramTrack& t = *track_;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
+  const auto key_of_block = [&t](std::size_t index) {
+    const std::uint64_t block = t.lines_.at(index);
+    return std::pair(line_key(t.source(static_cast<std::size_t>(block))), block);
+  };
+  bool is_sorted = true;
+  for (std::size_t n = 1; n < t.lines_.size() && is_sorted; ++n) {
+    is_sorted = key_of_block(n - 1) < key_of_block(n);
+  }
+  if (is_sorted) return;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> keyed;
   keyed.reserve(t.lines_.size());
-  for (const std::uint32_t block : t.lines_) keyed.emplace_back(line_key(t.source(block)), block);
-  if (std::is_sorted(keyed.begin(), keyed.end())) return;
+  for (std::size_t n = 0; n < t.lines_.size(); ++n) keyed.push_back(key_of_block(n));
   std::sort(keyed.begin(), keyed.end());
-  std::transform(keyed.begin(), keyed.end(), t.lines_.begin(),
-                 [](const auto& entry) { return entry.second; });
+  t.lines_ = PackedColumn(PackedColumn::Of::kIntegers);
+  for (const auto& entry : keyed) t.lines_.push(entry.second);
 }
 
 std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::string> files,
                                                                const WorkpieceFrame& frame) {
   assert(track_);
+  if (!track_->empty()) note_duration(0);
   sort_lines();
   ProgramTrack& t = *track_;
   t.files_ = std::move(files);
@@ -388,16 +421,15 @@ std::shared_ptr<const ProgramTrack> ProgramTrackBuilder::build(std::vector<std::
   for (auto* columns : {&t.to_mm_, &t.to_abc_deg_, &t.to_uvw_mm_, &t.arc_center_mm_}) {
     for (PackedColumn& column : *columns) column.shrink();
   }
-  for (PackedColumn* column :
-       {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_, &t.duration_s_, &t.programmed_,
-        &t.allowed_, &t.line_, &t.selected_tool_, &t.selected_at_, &t.mode_, &t.way_}) {
+  for (PackedColumn* column : {&t.arc_sweep_rad_, &t.feed_, &t.spindle_rpm_, &t.start_s_,
+                               &t.duration_change_, &t.programmed_, &t.allowed_, &t.line_,
+                               &t.lines_, &t.selected_tool_, &t.selected_at_, &t.mode_, &t.way_}) {
     column->shrink();
   }
   t.modes_.shrink_to_fit();
   t.ways_.shrink_to_fit();
   t.jumps_.shrink_to_fit();
   t.block_start_.shrink_to_fit();
-  t.lines_.shrink_to_fit();
   t.tool_changes_.shrink_to_fit();
   mode_numbers_.clear();
   return std::shared_ptr<const ProgramTrack>(std::move(track_));

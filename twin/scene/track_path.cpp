@@ -39,9 +39,7 @@ std::shared_ptr<PathChunk> new_chunk(std::uint32_t index) {
 TrackPath::TrackPath(std::shared_ptr<const ProgramTrack> track, bool planned, MotionMoves moves)
     : track_(std::move(track)),
       feed_kind_(planned ? PathKind::kPlanned : PathKind::kFeed),
-      moves_(std::move(moves)) {
-  first_vertex_.reserve(track_->size());
-}
+      moves_(std::move(moves)) {}
 
 std::vector<std::shared_ptr<const PathChunk>> TrackPath::next_chunks() {
   while (!complete() && made_.size() < kChunksAtOnce) add(next_motion_++);
@@ -53,9 +51,9 @@ std::vector<std::shared_ptr<const PathChunk>> TrackPath::next_chunks() {
 
 std::uint64_t TrackPath::past_vertices(const TrackPosition& place) const {
   if (place.motion >= first_vertex_.size()) return vertices_;
-  const std::uint64_t begin = first_vertex_[place.motion];
+  const std::uint64_t begin = first_vertex_.at(place.motion);
   const std::uint64_t end = place.motion + 1 < first_vertex_.size()
-                                ? first_vertex_[place.motion + 1]
+                                ? first_vertex_.at(place.motion + 1)
                                 : std::max<std::uint64_t>(vertices_, begin);
   return begin +
          static_cast<std::uint64_t>(std::floor(place.fraction * static_cast<double>(end - begin)));
@@ -64,14 +62,14 @@ std::uint64_t TrackPath::past_vertices(const TrackPosition& place) const {
 void TrackPath::add(std::size_t motion) {
   const MotionKind kind = track_->kind(motion);
   if (!is_move(kind)) {
-    first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+    first_vertex_.push(vertices_);
     return;
   }
   const PathKind shown = track_->is_traverse(motion) ? PathKind::kTraverse : feed_kind_;
   if (moves_.path() != nullptr && add_tilted(motion, shown)) return;
   const Vec3 from_mm = track_->from_mm(motion);
   if (vertices_ == 0) push(from_mm, PathKind::kTraverse, motion);
-  first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+  first_vertex_.push(vertices_);
   if (kind == MotionKind::kArc) {
     const Motion arc = track_->motion(motion);
     const int chords = chords_of(arc.arc, arc.from_mm);
@@ -90,7 +88,7 @@ bool TrackPath::add_tilted(std::size_t motion, PathKind kind) {
   moves_.path()->moves_of(tilted, kTipReach_mm, motion, divided_);
   if (vertices_ == 0 && !divided_.empty())
     push(divided_.front().from_mm, PathKind::kTraverse, motion);
-  first_vertex_.push_back(static_cast<std::uint32_t>(vertices_));
+  first_vertex_.push(vertices_);
   for (const CutMove& move : divided_) push(move.to_mm, kind, motion);
   return true;
 }

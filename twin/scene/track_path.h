@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "twin/machine/motion_moves.h"
+#include "twin/playback/packed_column.h"
 #include "twin/playback/program_track.h"
 #include "viewer/scene.h"
 
@@ -42,7 +43,7 @@ class TrackPath {
   std::vector<CutMove> divided_;
   std::size_t next_motion_ = 0;
   std::uint64_t vertices_ = 0;
-  std::vector<std::uint32_t> first_vertex_;  ///< by motion: those before it are past
+  PackedColumn first_vertex_{PackedColumn::Of::kIntegers};  ///< by motion: those before are past
   std::shared_ptr<PathChunk> open_;
   std::vector<std::shared_ptr<const PathChunk>> made_;
 };

@@ -40,8 +40,9 @@ DiameterLines diameter_lines(const ProgramText& text) {
   DiameterLines files;
   for (const SourceFile& file : text.files) {
     auto& lines = files.emplace_back();
+    SourceLines text_lines(file);
     for (int line = 1; line <= file.line_count(); ++line) {
-      if (const auto said = diameter_word(file.line(line))) lines.emplace_back(line, *said);
+      if (const auto said = diameter_word(text_lines.line(line))) lines.emplace_back(line, *said);
     }
   }
   return files;

@@ -150,8 +150,9 @@ std::vector<ShownLine> ShopBroadcast::code_about(const std::string& path, int li
   std::vector<ShownLine> lines;
   if (!code_ || line < 1 || line > code_->files[0].line_count()) return lines;
   const int last = std::min(line + kCodeLines, code_->files[0].line_count());
+  SourceLines text(code_->files[0]);
   for (int number = std::max(1, line - kCodeLines); number <= last; ++number) {
-    lines.push_back({number, std::string(code_->files[0].line(number).substr(0, kMostLineShown))});
+    lines.push_back({number, std::string(text.line(number).substr(0, kMostLineShown))});
   }
   return lines;
 }

@@ -2,6 +2,8 @@
 // Lines as rectangles with round ends, six vertices each, for lines that are wider than the one pixel
 // of OpenGL's own. Their ends are read from a buffer: x, y, z and the bits of a colour or a kind.
 uniform usamplerBuffer ends;
+uniform usamplerBuffer numbers;
+uniform int is_numbered;    // 1: strips are of the ends with these numbers
 uniform mat4 clip_from_world;
 uniform float towards_eye;  // in clip coordinates: lines that lie in a surface are seen on it
 uniform vec2 picture_px;
@@ -59,6 +61,9 @@ float inside(vec4 clip, int plane) {
 void main() {
   int corner = gl_VertexID % 6, first = gl_VertexID / 6 * step;
   ivec2 at = single.x >= 0 ? single : ivec2(first, first + 1);
+  if (is_numbered != 0 && single.x < 0) {
+    at = ivec2(texelFetch(numbers, at.x).r, texelFetch(numbers, at.y).r);
+  }
   uvec4 from = texelFetch(ends, at.x), to = texelFetch(ends, at.y);
   line_rgba = color_of(to.w);
   vec4 a = clip_of(from), b = clip_of(to);

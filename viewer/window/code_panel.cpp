@@ -28,6 +28,7 @@ class FileView {
   FileView(const PanelContext& context, const SourceFile& file, int index)
       : context_(context),
         file_(file),
+        lines_(file),
         moment_(*context.shown.moment),
         scroll_(context.state->code),
         index_(index),
@@ -144,7 +145,7 @@ class FileView {
       }
       draw_gutter(list, number, y);
       list->PushClipRect({corner_.x + gutter_px_, corner_.y}, end, true);
-      draw_text(list, file_.line(number), y);
+      draw_text(list, lines_.line(number), y);
       list->PopClipRect();
     }
     ImGui::PopFont();
@@ -248,6 +249,7 @@ class FileView {
 
   const PanelContext& context_;
   const SourceFile& file_;
+  mutable SourceLines lines_;
   const Moment& moment_;
   CodeScroll& scroll_;
   int index_;
@@ -282,8 +284,9 @@ bool find_next(const std::vector<SourceFile>& files, const std::string& text, in
   // Once through each file, and the one that it begins in once more.
   for (int turns = 0; turns <= count; ++turns) {
     const SourceFile& source = files[static_cast<std::size_t>(file)];
+    SourceLines lines(source);
     for (line += step; line >= 1 && line <= source.line_count(); line += step) {
-      if (find_text(source.line(line), text) == std::string_view::npos) continue;
+      if (find_text(lines.line(line), text) == std::string_view::npos) continue;
       scroll->found_file = file;
       scroll->found_line = line;
       scroll->shows_found = true;

@@ -88,9 +88,7 @@ GLsizei load(GLuint array, GLuint buffer, const std::vector<MarkerVertex>& verti
 Result<MarkerStore> MarkerStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::marker_vert, shaders::marker_frag);
   if (!program) return Error{program.error()};
-  Result<WideLines> wide = WideLines::create();
-  if (!wide) return Error{wide.error()};
-  return MarkerStore(std::move(*program), std::move(*wide));
+  return MarkerStore(std::move(*program));
 }
 
 void MarkerStore::set_setup(const SceneSetup& setup) {

@@ -35,8 +35,7 @@ class MarkerStore {
     GLsizei count = 0;
   };
 
-  MarkerStore(GlProgram program, WideLines wide)
-      : program_(std::move(program)), wide_(std::move(wide)) {}
+  explicit MarkerStore(GlProgram program) : program_(std::move(program)) {}
   void draw_lines(const Batch& batch, const Projection& projection, double nearer_px, float opacity,
                   bool may_smooth) const;
   void draw_batch(const Batch& batch, GLenum shape, float opacity) const;

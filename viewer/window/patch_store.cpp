@@ -111,6 +111,10 @@ bool has(const MeshPatch& patch, VertexData data) {
   return true;
 }
 
+/// After so many the card begins to draw. Where that is a processor, it has to keep a quarter of a
+/// kilobyte of each until then.
+constexpr std::size_t kFlushedTriangles = 16'384;
+
 }  // namespace
 
 void PatchStore::offer(std::shared_ptr<const MeshPatch> patch) {
@@ -248,11 +252,14 @@ void PatchStore::project(const Projection& projection) {
 }
 
 std::size_t PatchStore::draw(const ScreenRect& rect, VertexData data, bool having) const {
-  std::size_t triangles = 0;
+  std::size_t triangles = 0, flushed = 0;
   for (const auto& [number, tile] : tiles_) {
     if (!tile.rect.intersects(rect) || has(*tile.patch, data) != having) continue;
     glBindVertexArray(tile.array.name());
     triangles += draw_runs(tile, rect);
+    if (triangles < flushed + kFlushedTriangles) continue;
+    glFlush();
+    flushed = triangles;
   }
   return triangles;
 }

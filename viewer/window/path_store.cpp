@@ -8,7 +8,6 @@
 #include <glm/vector_relational.hpp>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -25,8 +24,14 @@ constexpr double kNearer_px = 2.5;
 /// What is seen of a chunk that reaches an edge of the picture is found by about so many boxes.
 constexpr std::size_t kSeenBoxes = 8;
 
-/// Of a chunk's box in each direction.
-constexpr double kSteps = 65535.0;
+/// After so many the card begins to draw, as PatchStore has it.
+constexpr std::size_t kFlushedVertices = 16'384;
+
+/// Of a chunk's box, and of a run's, in each direction.
+constexpr double kSteps = 65535.0, kPlaces = 255.0;
+
+/// How far up from `low`; 0 where the whole has no size.
+double share_of(double at, double low, double size) { return size > 0 ? (at - low) / size : 0.0; }
 
 Box box_of(const std::vector<PathVertex>& vertices) {
   Box box;
@@ -74,17 +79,28 @@ bool is_outside(const Box& box, const Projection& projection) {
   return glm::any(is_beyond);
 }
 
-/// Around the segments of a strip, so many at a time.
-std::vector<Box> boxes_of_runs(std::span<const PathVertex> vertices, std::size_t segments) {
-  std::vector<Box> boxes;
-  boxes.reserve(vertices.size() / segments + 1);
-  for (std::size_t i = 1; i < vertices.size(); ++i) {
-    if ((i - 1) % segments == 0) {
-      boxes.emplace_back().extend(Vec3(vertices[i - 1].position_mm));
-    }
-    boxes.back().extend(Vec3(vertices[i].position_mm));
+void draw_vertices(const std::vector<PathStore::Part>& parts) {
+  std::vector<GLint> firsts;
+  std::vector<GLsizei> counts;
+  for (const PathStore::Part& part : parts) {
+    firsts.push_back(static_cast<GLint>(part.first));
+    counts.push_back(static_cast<GLsizei>(part.count));
   }
-  return boxes;
+  glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
+                    static_cast<GLsizei>(counts.size()));
+}
+
+/// Of the vertex array that is bound.
+void draw_numbers(const GlBuffer& numbers, const std::vector<PathStore::Part>& parts) {
+  std::vector<const void*> firsts;
+  std::vector<GLsizei> counts;
+  for (const PathStore::Part& part : parts) {
+    firsts.push_back(reinterpret_cast<const void*>(part.first * sizeof(std::uint16_t)));
+    counts.push_back(static_cast<GLsizei>(part.count));
+  }
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, numbers.name());
+  glMultiDrawElements(GL_LINE_STRIP, counts.data(), GL_UNSIGNED_SHORT, firsts.data(),
+                      static_cast<GLsizei>(counts.size()));
 }
 
 }  // namespace
@@ -96,15 +112,21 @@ std::size_t PathStore::Strip::at_number(std::size_t number) const {
 }
 
 std::size_t PathStore::Chunk::gpu_bytes() const {
-  return strips.empty() ? 0 : (strips.back().first + strips.back().count) * sizeof(PathVertex);
+  std::size_t sum = count() * sizeof(PathVertex);
+  for (const Strip& strip : strips) sum += strip.kept.size() * sizeof(std::uint16_t);
+  return sum;
+}
+
+Box PathStore::Chunk::box_of(const RunBox& run) const {
+  const Vec3 step_mm = box_mm.size() / kSteps;
+  return {box_mm.min + Vec3(run.low[0], run.low[1], run.low[2]) * step_mm,
+          box_mm.min + Vec3(run.high[0], run.high[1], run.high[2]) * step_mm};
 }
 
 Result<PathStore> PathStore::create() {
   Result<GlProgram> program = GlProgram::create(shaders::path_vert, shaders::path_frag);
   if (!program) return Error{program.error()};
-  Result<WideLines> wide = WideLines::create();
-  if (!wide) return Error{wide.error()};
-  return PathStore(std::move(*program), std::move(*wide));
+  return PathStore(std::move(*program));
 }
 
 void PathStore::set_chunk_count(std::uint32_t count) {
@@ -188,7 +210,7 @@ std::size_t PathStore::upload(std::size_t budget_bytes, std::vector<Box>* change
   while (!waiting_.empty()) {
     const std::size_t count = waiting_.front()->vertices.size();
     // Levels have no more vertices together than the path itself.
-    const std::size_t size = (count > kPathChunkSegments ? 2 : 1) * count * sizeof(PathVertex);
+    const std::size_t size = count * (sizeof(PathVertex) + sizeof(std::uint16_t));
     if (bytes > 0 && bytes + size > budget_bytes) break;
     std::shared_ptr<const PathChunk> values = std::move(waiting_.front());
     waiting_.pop_front();
@@ -211,34 +233,41 @@ Box PathStore::change_of(const Chunk& chunk, const PathChunk& values) {
 }
 
 void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
-  std::vector<PathVertex> vertices = values->vertices;
-  const std::size_t count = vertices.size();
-  const bool is_full = count > kPathChunkSegments;
+  const std::vector<PathVertex>& vertices = values->vertices;
+  const bool is_full = vertices.size() > kPathChunkSegments;
   gpu_bytes_ -= chunk->gpu_bytes();
+  measure(chunk, vertices);
   chunk->level = 0;
   chunk->strips.clear();
-  chunk->strips.push_back({0.0, 0, count, {}, boxes_of_runs(vertices, kRunSegments), {}});
+  chunk->strips.push_back({0.0, 0, vertices.size(), {}, boxes_of_runs(*chunk, vertices, {}), {}});
+  note_places(chunk, vertices);
+  std::vector<std::uint16_t> numbers;
   for (const PathLevel& level : is_full ? path_levels(vertices) : std::vector<PathLevel>{}) {
     Strip& strip = chunk->strips.emplace_back();
     strip.tolerance_mm = level.tolerance_mm;
-    strip.first = vertices.size();
+    strip.first = numbers.size();
     strip.count = level.kept.size();
     strip.kept.assign(level.kept.begin(), level.kept.end());
-    for (const std::uint32_t number : level.kept) vertices.push_back(values->vertices[number]);
-    strip.run_boxes_mm =
-        boxes_of_runs(std::span(vertices).subspan(strip.first), strip.run_segments());
+    strip.run_boxes = boxes_of_runs(*chunk, vertices, strip.kept);
+    numbers.insert(numbers.end(), strip.kept.begin(), strip.kept.end());
   }
+  chunk->strips.shrink_to_fit();
   gpu_bytes_ += chunk->gpu_bytes();
   glBindVertexArray(chunk->array.name());
   glBindBuffer(GL_ARRAY_BUFFER, chunk->vertices.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(chunk->gpu_bytes()), vertices.data(),
-               GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(PathVertex)),
+               vertices.data(), GL_DYNAMIC_DRAW);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(PathVertex), nullptr);
   glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(PathVertex),
                          reinterpret_cast<const void*>(sizeof(glm::vec3)));  // kind and move
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
-  measure(chunk, values->vertices);
+  if (!numbers.empty()) {
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, chunk->numbers.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(numbers.size() * sizeof(std::uint16_t)), numbers.data(),
+                 GL_DYNAMIC_DRAW);
+  }
   project(chunk);
   chunk->growing = is_full ? nullptr : std::move(values);
 }
@@ -246,36 +275,73 @@ void PathStore::load(Chunk* chunk, std::shared_ptr<const PathChunk> values) {
 void PathStore::measure(Chunk* chunk, const std::vector<PathVertex>& vertices) {
   chunk->box_mm = box_of(vertices);
   chunk->length_mm = 0.0;
-  chunk->places.clear();
-  chunk->places.reserve(vertices.size());
-  const Vec3 size = chunk->box_mm.size();
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Vec3 at(vertices[i].position_mm);
-    Steps& place = chunk->places.emplace_back();
-    for (int axis = 0; axis < 3; ++axis) {
-      const double share = size[axis] > 0 ? (at[axis] - chunk->box_mm.min[axis]) / size[axis] : 0.0;
-      place[static_cast<std::size_t>(axis)] =
-          static_cast<std::uint16_t>(std::lround(share * kSteps));
-    }
-    if (i == 0) continue;
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
     const glm::vec3 step = vertices[i].position_mm - vertices[i - 1].position_mm;
     chunk->length_mm += static_cast<double>(glm::length(step));
   }
 }
 
-Box PathStore::box_of_part(const Chunk& chunk, std::size_t begin, std::size_t end) {
-  Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
-  if (begin >= end) return {};
-  for (std::size_t i = begin; i < end; ++i) {
-    for (std::size_t axis = 0; axis < low.size(); ++axis) {
-      low[axis] = std::min(low[axis], chunk.places[i][axis]);
-      high[axis] = std::max(high[axis], chunk.places[i][axis]);
+std::vector<PathStore::RunBox> PathStore::boxes_of_runs(const Chunk& chunk,
+                                                        const std::vector<PathVertex>& vertices,
+                                                        const std::vector<std::uint16_t>& kept) {
+  const std::size_t segments = kept.empty() ? kRunSegments : kThinnedRunSegments;
+  const std::size_t count = kept.empty() ? vertices.size() : kept.size();
+  const Vec3 size = chunk.box_mm.size();
+  std::vector<RunBox> boxes;
+  boxes.reserve((count + segments - 2) / segments);
+  for (std::size_t first = 0; first + 1 < count; first += segments) {
+    Box box;
+    for (std::size_t i = first; i <= std::min(first + segments, count - 1); ++i) {
+      box.extend(Vec3(vertices[kept.empty() ? i : kept[i]].position_mm));
+    }
+    RunBox& run = boxes.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = chunk.box_mm.min[axis];
+      const auto index = static_cast<std::size_t>(axis);
+      run.low[index] =
+          static_cast<std::uint16_t>(std::floor(share_of(box.min[axis], low, size[axis]) * kSteps));
+      run.high[index] =
+          static_cast<std::uint16_t>(std::ceil(share_of(box.max[axis], low, size[axis]) * kSteps));
     }
   }
-  const Vec3 step_mm = chunk.box_mm.size() / kSteps;
-  // A place is rounded: it is less than a step off.
-  return {chunk.box_mm.min + (Vec3(low[0], low[1], low[2]) - 1.0) * step_mm,
-          chunk.box_mm.min + (Vec3(high[0], high[1], high[2]) + 1.0) * step_mm};
+  return boxes;
+}
+
+void PathStore::note_places(Chunk* chunk, const std::vector<PathVertex>& vertices) {
+  const std::vector<RunBox>& runs = chunk->strips.front().run_boxes;
+  chunk->places.assign(vertices.size(), Place{});
+  for (std::size_t i = 0; i < vertices.size() && !runs.empty(); ++i) {
+    const Box box = chunk->box_of(runs[std::min(i / kRunSegments, runs.size() - 1)]);
+    const Vec3 size = box.size(), at(vertices[i].position_mm);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = std::clamp(share_of(at[axis], box.min[axis], size[axis]), 0.0, 1.0);
+      chunk->places[i][static_cast<std::size_t>(axis)] =
+          static_cast<std::uint8_t>(std::lround(share * kPlaces));
+    }
+  }
+}
+
+Box PathStore::box_of_part(const Chunk& chunk, std::size_t begin, std::size_t end) {
+  if (chunk.count() < 2) return begin < end ? chunk.box_mm : Box{};
+  const std::vector<RunBox>& runs = chunk.strips.front().run_boxes;
+  Box whole;
+  for (std::size_t i = begin; i < end;) {
+    const std::size_t run = std::min(i / kRunSegments, runs.size() - 1);
+    const std::size_t run_end = run + 1 < runs.size() ? (run + 1) * kRunSegments : end;
+    Place low{0xff, 0xff, 0xff}, high{0, 0, 0};
+    for (; i < std::min(end, run_end); ++i) {
+      for (std::size_t axis = 0; axis < low.size(); ++axis) {
+        low[axis] = std::min(low[axis], chunk.places[i][axis]);
+        high[axis] = std::max(high[axis], chunk.places[i][axis]);
+      }
+    }
+    const Box box = chunk.box_of(runs[run]);
+    const Vec3 step_mm = box.size() / kPlaces;
+    // A place is rounded: it is less than a step off.
+    whole.extend(box.min + (Vec3(low[0], low[1], low[2]) - 1.0) * step_mm);
+    whole.extend(box.min + (Vec3(high[0], high[1], high[2]) + 1.0) * step_mm);
+  }
+  return whole;
 }
 
 std::size_t PathStore::past_of(std::size_t chunk, std::uint64_t past_vertices) const {
@@ -317,19 +383,20 @@ void PathStore::project(Chunk* chunk) const {
 /// Of a chunk that is in the picture in part, the nearest point may be far outside, even behind the
 /// eye.
 void PathStore::project_parts(Chunk* chunk) const {
-  const auto has_few = [](const Strip& strip) { return strip.run_boxes_mm.size() <= kSeenBoxes; };
+  const auto has_few = [](const Strip& strip) { return strip.run_boxes.size() <= kSeenBoxes; };
   const auto found = std::find_if(chunk->strips.begin(), chunk->strips.end(), has_few);
   const Strip& strip = found == chunk->strips.end() ? chunk->strips.back() : *found;
   double pixel_mm = std::numeric_limits<double>::infinity();
   std::size_t seen = 0;
-  for (Box box : strip.run_boxes_mm) {
+  for (const RunBox& run : strip.run_boxes) {
+    Box box = chunk->box_of(run);
     box.min -= strip.tolerance_mm;
     box.max += strip.tolerance_mm;
     if (is_outside(box, projection_)) continue;
     ++seen;
     pixel_mm = std::min(pixel_mm, smallest_pixel_mm(box, projection_));
   }
-  const std::size_t boxes = std::max<std::size_t>(1, strip.run_boxes_mm.size());
+  const std::size_t boxes = std::max<std::size_t>(1, strip.run_boxes.size());
   chunk->seen_share = static_cast<double>(seen) / static_cast<double>(boxes);
   chunk->pixel_mm = pixel_mm;
 }
@@ -350,11 +417,11 @@ void PathStore::project(const Projection& projection) {
 
 /// Of the chunks that a rectangle cuts only: to know them for all would cost more than drawing,
 /// whenever the eye moves.
-const std::vector<ScreenRect>& PathStore::run_rects(const Strip& strip) const {
+const std::vector<ScreenRect>& PathStore::run_rects(const Chunk& chunk, const Strip& strip) const {
   if (strip.run_rects.empty()) {
-    strip.run_rects.reserve(strip.run_boxes_mm.size());
-    for (const Box& box : strip.run_boxes_mm) {
-      strip.run_rects.push_back(covered_rect(box, projection_));
+    strip.run_rects.reserve(strip.run_boxes.size());
+    for (const RunBox& run : strip.run_boxes) {
+      strip.run_rects.push_back(covered_rect(chunk.box_of(run), projection_));
     }
   }
   return strip.run_rects;
@@ -363,38 +430,35 @@ const std::vector<ScreenRect>& PathStore::run_rects(const Strip& strip) const {
 void PathStore::draw_lines(const Chunk& chunk, const Strip& strip, std::size_t begin,
                            std::size_t end, const ScreenRect& rect) const {
   if (end < begin + 2) return;
-  const auto first = static_cast<GLint>(strip.first);
+  std::vector<Part> parts;
   if (chunk.rect.common(rect) == chunk.rect && !reaches_edge(chunk.rect, projection_.size_px)) {
-    const GLint from = first + static_cast<GLint>(begin);
-    const auto count = static_cast<GLsizei>(end - begin);
-    if (is_wide()) return wide_.draw_strip(from, count);
-    glDrawArrays(GL_LINE_STRIP, from, count);
-    return;
-  }
-  std::vector<GLint> firsts;
-  std::vector<GLsizei> counts;
-  const std::vector<ScreenRect>& rects = run_rects(strip);
-  const std::size_t last = end - 1;
-  std::size_t drawn_to = 0;
-  const std::size_t segments = strip.run_segments();
-  for (std::size_t run = begin / segments; run * segments < last; ++run) {
-    if (!rects[run].intersects(rect)) continue;
-    const std::size_t from = std::max(begin, run * segments);
-    const std::size_t to = std::min(last, (run + 1) * segments);
-    if (counts.empty() || drawn_to != from) {
-      firsts.push_back(first + static_cast<GLint>(from));
-      counts.push_back(1);
+    parts.push_back({strip.first + begin, end - begin});
+  } else {
+    const std::vector<ScreenRect>& rects = run_rects(chunk, strip);
+    const std::size_t last = end - 1;
+    std::size_t drawn_to = 0;
+    const std::size_t segments = strip.run_segments();
+    for (std::size_t run = begin / segments; run * segments < last; ++run) {
+      if (!rects[run].intersects(rect)) continue;
+      const std::size_t from = std::max(begin, run * segments);
+      const std::size_t to = std::min(last, (run + 1) * segments);
+      if (parts.empty() || drawn_to != from) parts.push_back({strip.first + from, 1});
+      parts.back().count += to - from;
+      drawn_to = to;
     }
-    counts.back() += static_cast<GLsizei>(to - from);
-    drawn_to = to;
   }
-  if (counts.empty()) return;
-  if (is_wide()) {
-    for (std::size_t i = 0; i < counts.size(); ++i) wide_.draw_strip(firsts[i], counts[i]);
-    return;
+  if (parts.empty()) return;
+  if (is_wide()) return draw_wide(chunk, strip, parts);
+  strip.kept.empty() ? draw_vertices(parts) : draw_numbers(chunk.numbers, parts);
+}
+
+void PathStore::draw_wide(const Chunk& chunk, const Strip& strip,
+                          const std::vector<Part>& parts) const {
+  wide_.set_numbered(!strip.kept.empty());
+  if (!strip.kept.empty()) wide_.bind_numbers(chunk.number_texture, chunk.numbers);
+  for (const Part& part : parts) {
+    wide_.draw_strip(static_cast<int>(part.first), static_cast<int>(part.count));
   }
-  glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), counts.data(),
-                    static_cast<GLsizei>(counts.size()));
 }
 
 void PathStore::draw_line(std::size_t from, std::size_t to) const {
@@ -442,7 +506,7 @@ void PathStore::set_smooth(bool is_smooth) const {
 
 void PathStore::bind(const Chunk& chunk) const {
   glBindVertexArray(chunk.array.name());
-  if (is_wide()) wide_.bind(chunk.texture, chunk.vertices);
+  if (is_wide()) wide_.bind(chunk.vertex_texture, chunk.vertices);
 }
 
 void PathStore::draw_tail(const ScreenRect& rect, const PathColors& colors) const {
@@ -485,9 +549,15 @@ void PathStore::draw(const ScreenRect& rect, const PathColors& colors, bool may_
     if (is_past != told_past) set_is_past(is_past);
     told_past = is_past;
   };
+  std::size_t waiting = 0;
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const Chunk& chunk = chunks_[c];
     if (chunk.count() == 0 || !chunk.rect.intersects(rect)) continue;
+    waiting += chunk.strips[chunk.level].count;
+    if (waiting > kFlushedVertices) {
+      glFlush();
+      waiting = 0;
+    }
     const bool is_smooth = may_smooth && chunk.is_smooth;
     set_smooth(is_smooth);
     (is_smooth || !is_opaque ? glEnable : glDisable)(GL_BLEND);

@@ -25,16 +25,16 @@ struct PathColors {
   bool operator==(const PathColors&) const = default;
 };
 
-/// The vertices are on the card, not here as well. What stays of a chunk that is full, and thus
-/// does not grow any more, is where its vertices are to a 65535th of its size: that says which part
-/// of the picture is old when the tool has passed them. With boxes it is six tenths of what the
-/// card has.
+/// The vertices are on the card, not here as well; where the processor draws, its memory is the
+/// card's. What stays of a chunk that is full, and thus does not grow any more, is where its
+/// vertices are to a 255th of the run that they are in: that says which part of the picture is old
+/// when the tool has passed them. With boxes it is a fourth of what the card has.
 ///
-/// A chunk that is full is on the card through fewer vertices as well (PathLevel), and is drawn
-/// through the fewest that are nowhere further than kTolerance_px from it: closer than that, what
-/// is left out is not seen. Where that is still more than kDrawnVertices, the tolerance grows, the
-/// same for all chunks, until it is not: the picture is coarser then, but there in time. Where the
-/// past ends, the vertex at which it does is drawn as well. Lines are antialiased up to
+/// Of a chunk that is full the card knows the numbers of fewer vertices as well (PathLevel). It is
+/// drawn through the fewest that are nowhere further than kTolerance_px from it: closer than that,
+/// what is left out is not seen. Where that is still more than kDrawnVertices, the tolerance grows,
+/// the same for all chunks, until it is not: the picture is coarser then, but there in time. Where
+/// the past ends, the vertex at which it does is drawn as well. Lines are antialiased up to
 /// kSmoothVertices and kSmooth_px, in chunks whose segments are longer than kSmoothSegment_px on
 /// average: of shorter ones, the faint rims of one hide the next. Of a chunk only what comes near
 /// the rectangle is drawn, in runs of kRunSegments or kThinnedRunSegments. Lines of more than a
@@ -50,6 +50,11 @@ class PathStore {
   static constexpr std::size_t kTailShades = 8;
   static constexpr std::size_t kRunSegments = 32;
   static constexpr std::size_t kThinnedRunSegments = 4;  ///< longer ones
+
+  /// Of a strip: vertices, or numbers of vertices.
+  struct Part {
+    std::size_t first = 0, count = 0;
+  };
 
   static Result<PathStore> create();
 
@@ -82,16 +87,20 @@ class PathStore {
   std::size_t gpu_bytes() const { return gpu_bytes_; }
 
  private:
-  /// Of a chunk's box, in each direction.
-  using Steps = std::array<std::uint16_t, 3>;
+  /// Around a run, in steps of the chunk's box: each side a 65535th of it further out at most.
+  struct RunBox {
+    std::array<std::uint16_t, 3> low{}, high{};
+  };
+  /// Of a vertex in the box of its run, to a 255th of that.
+  using Place = std::array<std::uint8_t, 3>;
 
-  /// Strip of lines in the buffer of a chunk.
+  /// Strip of lines of a chunk.
   struct Strip {
     double tolerance_mm = 0.0;        ///< nowhere further from the path; 0: the path itself
-    std::size_t first = 0;            ///< vertex
+    std::size_t first = 0;            ///< in the chunk's numbers, of those that are kept
     std::size_t count = 0;            ///< of vertices
     std::vector<std::uint16_t> kept;  ///< their numbers in the chunk; empty: all of them
-    std::vector<Box> run_boxes_mm;
+    std::vector<RunBox> run_boxes;
     mutable std::vector<ScreenRect> run_rects;  ///< of the present projection; empty until needed
 
     std::size_t run_segments() const { return kept.empty() ? kRunSegments : kThinnedRunSegments; }
@@ -107,9 +116,10 @@ class PathStore {
     std::shared_ptr<const PathChunk> growing;
     GlVertexArray array;
     GlBuffer vertices;
-    GlTexture texture;  ///< of the buffer
+    GlBuffer numbers;  ///< of what its strips have kept, one after the other
+    GlTexture vertex_texture, number_texture;  ///< of the buffers
     Box box_mm;
-    std::vector<Steps> places;  ///< of the vertices within the box
+    std::vector<Place> places;  ///< of the vertices
     double length_mm = 0.0;
     std::size_t level = 0;  ///< of its strips: that is drawn
     bool is_smooth = true;
@@ -119,10 +129,10 @@ class PathStore {
 
     std::size_t count() const { return strips.empty() ? 0 : strips.front().count; }
     std::size_t gpu_bytes() const;
+    Box box_of(const RunBox& run) const;
   };
 
-  PathStore(GlProgram program, WideLines wide)
-      : program_(std::move(program)), wide_(std::move(wide)) {}
+  explicit PathStore(GlProgram program) : program_(std::move(program)) {}
   bool is_wide() const { return WideLines::are_needed(projection_); }
   /// The program that draws, with what all lines have in common.
   void use_program() const;
@@ -134,7 +144,12 @@ class PathStore {
   /// Where the chunk's picture changes with the new values.
   static Box change_of(const Chunk& chunk, const PathChunk& values);
   static void measure(Chunk* chunk, const std::vector<PathVertex>& vertices);
-  /// Holds vertices [begin, end) of it, and is at most two steps larger.
+  /// Of a chunk that has been measured; `kept` as in Strip.
+  static std::vector<RunBox> boxes_of_runs(const Chunk& chunk,
+                                           const std::vector<PathVertex>& vertices,
+                                           const std::vector<std::uint16_t>& kept);
+  static void note_places(Chunk* chunk, const std::vector<PathVertex>& vertices);
+  /// Holds vertices [begin, end) of it, and is larger by at most a 127th of their runs.
   static Box box_of_part(const Chunk& chunk, std::size_t begin, std::size_t end);
   void project(Chunk* chunk) const;
   void project_parts(Chunk* chunk) const;
@@ -149,10 +164,11 @@ class PathStore {
   /// Lines between the vertices [begin, end) of a strip that come near the rectangle.
   void draw_lines(const Chunk& chunk, const Strip& strip, std::size_t begin, std::size_t end,
                   const ScreenRect& rect) const;
+  void draw_wide(const Chunk& chunk, const Strip& strip, const std::vector<Part>& parts) const;
   void draw_tail(const ScreenRect& rect, const PathColors& colors) const;
   /// One line, between vertices of the chunk that is bound.
   void draw_line(std::size_t from, std::size_t to) const;
-  const std::vector<ScreenRect>& run_rects(const Strip& strip) const;
+  const std::vector<ScreenRect>& run_rects(const Chunk& chunk, const Strip& strip) const;
 
   GlProgram program_;
   WideLines wide_;

@@ -58,7 +58,7 @@ void draw_answer(const PanelContext& context, const PickedPoint& picked) {
     }
     if (ImGui::IsItemHovered()) {
       ImGui::SetTooltip("%s: %s", context.word(Text::kJumpToHere),
-                        std::string(files[file].line(picked.line)).c_str());
+                        files[file].line(picked.line).c_str());
     }
   }
   if (picked.deviation_mm) {

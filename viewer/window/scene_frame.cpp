@@ -174,7 +174,8 @@ Done SceneRenderer::Impl::draw(const Projection& projection, const DrawOptions& 
   counters.gpu_bytes = gpu_bytes();
   changed_mm_.clear();
   is_kept_old_ = false;
-  const std::string failure = present_gl_failure(counters.gpu_bytes);
+  std::string failure = present_gl_failure(counters.gpu_bytes);
+  if (!programs_.trouble().empty()) failure = programs_.trouble();
   if (failure.empty()) return std::monostate{};
   is_kept_old_ = true;
   return Error{failure};

@@ -23,30 +23,46 @@ Result<GlProgram> scene_variant(const std::string& defines) {
 
 }  // namespace
 
-Result<ScenePrograms> ScenePrograms::create() {
-  // In the order of Name; the workpiece's in that of Paint.
-  const std::string open = "#define SECTION\n#define TWO_SIDED\n";
-  Result<GlProgram> made[]{
-      scene_variant(""),
-      scene_variant(open),
-      scene_variant("#define BY_CUT\n"),
-      scene_variant("#define BY_CUT\n" + open),
-      scene_variant("#define BY_MOVE\n"),
-      scene_variant("#define BY_MOVE\n" + open),
-      scene_variant("#define BY_MEASURE\n"),
-      scene_variant("#define BY_MEASURE\n" + open),
-      scene_variant("#define TWO_SIDED\n"),
-      scene_variant("#define BESIDE_GLASS\n#define TWO_SIDED\n"),
-      GlProgram::create(shaders::screen_vert, shaders::background_frag),
-      GlProgram::create(shaders::screen_vert, shaders::section_frag),
-      GlProgram::create(shaders::screen_vert, shaders::glass_frag),
-  };
-  std::vector<GlProgram> programs;
-  for (Result<GlProgram>& program : made) {
-    if (!program) return Error{program.error()};
-    programs.push_back(std::move(*program));
+Result<GlProgram> ScenePrograms::compiled(unsigned name) {
+  switch (name) {
+    case kMoving:
+      return scene_variant("#define TWO_SIDED\n");
+    case kBesideGlass:
+      return scene_variant("#define BESIDE_GLASS\n#define TWO_SIDED\n");
+    case kBackground:
+      return GlProgram::create(shaders::screen_vert, shaders::background_frag);
+    case kSectionFace:
+      return GlProgram::create(shaders::screen_vert, shaders::section_frag);
+    case kGlass:
+      return GlProgram::create(shaders::screen_vert, shaders::glass_frag);
+    default:
+      break;
   }
-  return ScenePrograms(std::move(programs));
+  // In the order of Paint.
+  constexpr std::array kPaints{"", "#define BY_CUT\n", "#define BY_MOVE\n", "#define BY_MEASURE\n"};
+  const bool has_section = name % 2 != 0;
+  return scene_variant(std::string(kPaints[(name - kWorkpiece) / 2]) +
+                       (has_section ? "#define SECTION\n#define TWO_SIDED\n" : ""));
+}
+
+Result<ScenePrograms> ScenePrograms::create() {
+  ScenePrograms programs;
+  for (const unsigned name : {unsigned{kWorkpiece}, unsigned{kMoving}, unsigned{kBackground}}) {
+    Result<GlProgram> made = compiled(name);
+    if (!made) return Error{made.error()};
+    programs.programs_[name] = std::move(*made);
+  }
+  return programs;
+}
+
+const GlProgram& ScenePrograms::program(unsigned name) const {
+  if (std::optional<GlProgram>& here = programs_[name]; !here) {
+    Result<GlProgram> made = compiled(name);
+    release_gl_compiler();
+    if (!made && trouble_.empty()) trouble_ = made.error();
+    here = made ? std::move(*made) : GlProgram::stand_in();
+  }
+  return *programs_[name];
 }
 
 }  // namespace kerf

@@ -69,6 +69,7 @@ Result<SceneRenderer> SceneRenderer::create(std::function<void()> wake) {
   if (!markers) return Error{markers.error()};
   Result<WorkpieceRenderer> draw_modes = WorkpieceRenderer::create(std::move(wake));
   if (!draw_modes) return Error{draw_modes.error()};
+  release_gl_compiler();
   return SceneRenderer(std::make_unique<Impl>(std::move(*programs), std::move(*path),
                                               std::move(*markers), std::move(*draw_modes)));
 }

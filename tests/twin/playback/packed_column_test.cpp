@@ -27,8 +27,9 @@ std::vector<std::uint64_t> bits_of(const std::vector<double>& numbers) {
 TEST(PackedColumn, IntegersOfEveryWidthComeBack) {
   std::mt19937_64 random(1);
   for (const std::uint64_t range :
-       {std::uint64_t{1}, std::uint64_t{200}, std::uint64_t{60'000}, std::uint64_t{1} << 31,
-        std::numeric_limits<std::uint64_t>::max()}) {
+       {std::uint64_t{1}, std::uint64_t{200}, std::uint64_t{60'000}, std::uint64_t{1} << 23,
+        std::uint64_t{1} << 31, std::uint64_t{1} << 39, std::uint64_t{1} << 47,
+        std::uint64_t{1} << 55, std::numeric_limits<std::uint64_t>::max()}) {
     std::vector<std::uint64_t> values;
     for (int i = 0; i < 1000; ++i) values.push_back(range / 3 + random() % range);
     expect_kept(Of::kIntegers, values);
@@ -60,18 +61,23 @@ TEST(PackedColumn, DecimalsAndAllOtherNumbersComeBackBitForBit) {
 TEST(PackedColumn, TakesWhatTheNumbersNeed) {
   constexpr std::size_t kMany = 100 * PackedColumn::kBlock;
   PackedColumn constant(Of::kReals), rows(Of::kReals), decimals(Of::kReals), wild(Of::kReals);
+  PackedColumn near(Of::kReals), table(Of::kReals);
   std::mt19937_64 random(3);
   for (std::size_t i = 0; i < kMany; ++i) {
     constant.push_real(std::sqrt(2.0));
     rows.push_real(static_cast<double>(i % 5) / 1e4);
     decimals.push_real(static_cast<double>(random() % 50'000) / 1e4);
-    wild.push_real(std::sqrt(static_cast<double>(i)));
+    wild.push(random());
+    near.push_real(1 + std::sqrt(static_cast<double>(i % 50)) / 0x1p20);  // 35 bits differ
+    table.push_real(static_cast<double>(random() % 2'000'000) / 1e4);
   }
-  for (PackedColumn* column : {&constant, &rows, &decimals, &wild}) column->shrink();
+  for (PackedColumn* column : {&constant, &rows, &decimals, &wild, &near, &table}) column->shrink();
   const std::size_t heads = constant.bytes();
   EXPECT_LT(heads, sizeof(PackedColumn) + 100 * 24 + 1);
   EXPECT_EQ(rows.bytes(), heads + kMany);
   EXPECT_EQ(decimals.bytes(), heads + 2 * kMany);
+  EXPECT_EQ(table.bytes(), heads + 3 * kMany);
+  EXPECT_EQ(near.bytes(), heads + 5 * kMany);
   EXPECT_EQ(wild.bytes(), heads + 8 * kMany);
 }
 
