@@ -242,11 +242,15 @@ std::array<std::uint32_t, 4> TileGrid::cut_ids_of_four(int i, int j) const {
 
 void TileGrid::read_cut_ids(int i, int j, bool along_x, std::span<std::uint32_t> out) const {
   if (!keeps_cut_ids_) return std::fill(out.begin(), out.end(), MeshPatch::kNotCut);
-  // Tile by tile.
+  // Tile by tile. Down a column each block is in memory of its own, which is asked for in time.
   int& along = along_x ? i : j;
   for (std::size_t n = 0; n < out.size();) {
     const std::uint32_t* const ids = cut_ids(index(i / kTileCells, j / kTileCells));
     const auto rest = static_cast<std::size_t>(kTileCells - along % kTileCells);
+    if (!along_x && j / kTileCells * kTileCells + kTileCells < ny_) {
+      const std::uint32_t* const next = cut_ids(index(i / kTileCells, j / kTileCells + 1));
+      for (int y = 0; y < kTileCells; y += kBlockY) __builtin_prefetch(next + offset(i, y));
+    }
     for (const std::size_t end = std::min(out.size(), n + rest); n < end; ++n, ++along)
       out[n] = ids[offset(i, j)];
   }
@@ -257,16 +261,31 @@ void TileGrid::keep_cut_ids(bool keep) {
   keeps_cut_ids_ = keep;
   begin_change();
   const auto arena = std::make_shared<TileArena>(tiles_.size(), tile_bytes());
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    float* const cells = arena->first(i);
-    std::copy_n(tiles_[i].get(), kTileFloats, cells);
+  const auto fill = [&](float* cells, const std::shared_ptr<float>& tile) {
+    std::copy_n(tile.get(), kTileFloats, cells);
     if (keep) std::fill_n(cut_ids_of(cells), kTileFloats, MeshPatch::kNotCut);
+    return TileArena::share(arena, cells);
+  };
+  // What a fresh grid shares stays shared.
+  std::vector<std::pair<const float*, std::shared_ptr<float>>> kinds;
+  const auto kind_of = [&](const std::shared_ptr<float>& tile) {
+    const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const auto& kind) { return kind.first == tile.get(); });
+    if (known != kinds.end()) return known->second;
+    kinds.emplace_back(tile.get(), fill(arena->take_apart(), tile));
+    return kinds.back().second;
+  };
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const bool is_common = arena_->is_common(tiles_[i].get());
+    std::shared_ptr<float> now = is_common ? kind_of(tiles_[i]) : fill(arena->first(i), tiles_[i]);
+    if (is_common) arena->give_back(arena->first(i));
     meet_other_grids();
-    set_tile(i, TileArena::share(arena, cells));
+    set_tile(i, std::move(now));
     versions_[i] = change_;
   }
   arena_ = arena;
-  share_equal_tiles();
+  if (kinds.empty()) return share_equal_tiles();
+  arena_->drop_free_memory();
 }
 
 void TileGrid::share_equal_tiles() {

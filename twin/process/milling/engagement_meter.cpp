@@ -349,8 +349,9 @@ const EngagementMeter::Taken& EngagementMeter::take(const Feed& feed) {
   anticlockwise_ = feed.anticlockwise;
   length_mm_ = way_length_mm(move);
   down_rad_ = down_of(move, length_mm_);
-  upright_ = UprightArc::of(move);
+  upright_.reset();
   turnings_.clear();
+  if (move.arc) upright_ = UprightArc::of(move);
   if (upright_) turnings_ = upright_->turning_parts();
   until_ = 1;
   taken_ = {};

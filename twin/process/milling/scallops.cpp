@@ -28,8 +28,20 @@ void ScallopScan::read(bool is_row, int line) {
     for (int i = 0; i < count; ++i)
       z_[static_cast<std::size_t>(i)] = static_cast<double>(std::max(floor, row.kept(i)));
   } else {
-    for (int j = 0; j < count; ++j)
-      z_[static_cast<std::size_t>(j)] = static_cast<double>(heights_.height(line, j));
+    constexpr int kSide = HeightGrid::kTileCells;
+    const float floor = heights_.floor_mm();
+    for (int ty = 0; ty < heights_.tiles_y(); ++ty) {
+      const float* const tile = heights_.tile(line / kSide, ty);
+      // Each block is in memory of its own, which is asked for in time.
+      if (ty + 1 < heights_.tiles_y()) {
+        const float* const next = heights_.tile(line / kSide, ty + 1);
+        for (int y = 0; y < kSide; y += HeightGrid::kBlockY)
+          __builtin_prefetch(next + HeightGrid::offset(line, y));
+      }
+      for (int j = ty * kSide; j < std::min(count, (ty + 1) * kSide); ++j)
+        z_[static_cast<std::size_t>(j)] =
+            static_cast<double>(std::max(floor, tile[HeightGrid::offset(line, j)]));
+    }
   }
   std::uint32_t last = MeshPatch::kNotCut;
   int tool = -1;
