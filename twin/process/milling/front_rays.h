@@ -94,6 +94,8 @@ class FrontRays {
     found_.effective_mm = std::max(found_.effective_mm, 2 * contact.radius_mm);
     found_.contact_mm = std::max(found_.contact_mm, contact.edge_mm);
     widen(contact.radius_mm, angle);
+    // Beside its middle it may be in material farther in than where the rim comes out of it.
+    if (!is_flat_ && contact.inner_mm > 0) widen(contact.inner_mm, angle);
   }
   void widen(double radius_mm, double angle) {
     const double left_mm = radius_mm * std::sin(angle);

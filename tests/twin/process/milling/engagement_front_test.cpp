@@ -479,5 +479,23 @@ TEST_F(EngagementMeterTest, WhatIsNotMeasuredIsTold) {
   EXPECT_NEAR(found.unmeasured_mm, 80, 1e-9);
 }
 
+/// A ball that goes down beside a wall: only from 70 degrees to the left on there is material, from
+/// 1.3 mm off its middle to its rim at 3 mm. As wide as from there, 1.3 * sin(70) = 1.22 mm, to 3.
+/// Of a flat tool nothing is known but its rim: from 3 * sin(70) = 2.82 mm.
+TEST(FrontRaysTest, WhatIsInMaterialFartherInIsAsWide) {
+  const auto contact_at = [](double angle) {
+    FrontContact contact;
+    if (angle < 70 * kPi / 180) return contact;
+    contact.radius_mm = 3, contact.inner_mm = 1.3, contact.high_mm = 1, contact.deep_mm = 1;
+    return contact;
+  };
+  for (const bool is_flat : {false, true}) {
+    FrontRays rays(18, 3, is_flat);
+    rays.sweep(contact_at);
+    const double from_mm = (is_flat ? 3 : 1.3) * std::sin(70 * kPi / 180);
+    EXPECT_NEAR(rays.look(false).wide_mm, 3 - from_mm, 0.02) << is_flat;
+  }
+}
+
 }  // namespace
 }  // namespace kerf
