@@ -27,6 +27,11 @@ Words expected_after(const Motion& last) {
 
 }  // namespace
 
+const Motion& MotionArchive::before_first() {
+  static const Motion motion;
+  return motion;
+}
+
 /// For each motion a bit a word that differs, and those words.
 void MotionArchive::append(std::span<const Motion> motions) {
   for (const Motion& motion : motions) {

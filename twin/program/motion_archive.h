@@ -30,12 +30,14 @@ class MotionArchive {
    private:
     const MotionArchive& archive_;
     std::size_t at_ = 0;
-    Motion last_{};
+    Motion last_ = before_first();
   };
 
  private:
+  /// The same bits for all: what lies between its members, too, counts as it happens to be.
+  static const Motion& before_first();
   std::vector<std::uint64_t> words_;
-  Motion last_{};
+  Motion last_ = before_first();
   std::size_t size_ = 0;
 };
 
