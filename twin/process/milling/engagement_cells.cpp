@@ -12,7 +12,8 @@ namespace {
 
 /// Of more cells across its radius not all are asked, but so many as if each were larger.
 constexpr double kManyCells = 31;
-/// A tip that rises more steeply than this, so near to its middle, is a point.
+/// A tip that rises more steeply than this, so near to its middle, is a point: a cone, and a ball
+/// of five cells or less.
 constexpr double kNearTip_cells = 2, kPointed = 0.2;
 /// Looking for where material ends, so many cells beyond the last in it.
 constexpr double kBeyond_cells = 1.5;
